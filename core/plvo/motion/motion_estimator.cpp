@@ -151,7 +151,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
   Vector6 apart = Vector6::Zero();
   const double covered = ransac.covered();
   estimate.contradicted = contradict(terms, T, solving.references);
-  if (start.others && (covered < kWorldAtRest || estimate.contradicted)) {
+  if (start.search_beside && (covered < kWorldAtRest || estimate.contradicted)) {
     apart = boxminus(T, first);
     Se3 other = T;
     const bool found = ransac.run_beside(seed, start.prediction, other, estimate.ransac) &&

@@ -63,7 +63,7 @@ struct MotionStart {
   const Se3* prediction;
   NuisanceParameters shared;
   bool estimated;
-  bool others = true;  // search for another motion if this one explains too little
+  bool search_beside = true;  // for another motion, if this one explains too little
 };
 
 // Fills `estimate`. sets: at most kMaxConstraintSets, in a fixed order. others: terms that RANSAC does not

@@ -16,6 +16,7 @@ namespace plvo {
 inline constexpr std::size_t kMaxReferences = 3;
 // The poses of the references, followed by the pose of the last good frame, from which the propagated prior
 // starts. That frame need not be one of the references.
+inline constexpr std::size_t kLastGoodPose = kMaxReferences;
 inline constexpr std::size_t kMaxPoses = kMaxReferences + 1;
 // Points and lines of each reference.
 inline constexpr std::size_t kMaxConstraintSets = 2 * kMaxReferences;

@@ -51,9 +51,21 @@ struct Limits {
   // A quarter of VGA's pixels and features. With more features the estimate of a frame is better. But on a
   // processor that cannot keep up with the camera, a higher frame rate improves the motion more
   // (docs/decisions/qvga_capacities.md).
-  static constexpr Limits qvga() { return {320, 240, 100, 64, 2, 1, 0, 1, 0}; }
+  static constexpr Limits qvga() {
+    return {
+        .width = 320, .height = 240, .keypoints = 100, .segments = 64, .kept_keyframes = 0, .surfaces = 0};
+  }
   // Fits within 512 KiB, with Config::tiny().
-  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3, 0, 1, 0}; }
+  static constexpr Limits tiny() {
+    return {.width = 320,
+            .height = 240,
+            .keypoints = 200,
+            .segments = 64,
+            .references = 1,
+            .line_bands = 3,
+            .kept_keyframes = 0,
+            .surfaces = 0};
+  }
   // Returns kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };

@@ -2,6 +2,7 @@
 // The public API itself: which input is refused, and the order in which a frame passes through the modules.
 #include "plvo/odometry/odometry.hpp"
 
+#include <array>
 #include <new>
 
 #include "plvo/odometry/elapsed.hpp"
@@ -125,9 +126,10 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   const double brightness = extraction.prepare_image(context, input.colour);
 
   // Predict: the motion since each reference, and that during the exposure.
+  std::array<Reference, kMaxReferences> references;
   const PredictedMotion predicted =
       predict(window_, camera_, input.stamp_ns, propagate(input.stamp_ns, prior),
-              depth_after_colour_s(camera_, depth_.first_stamp_ns(), input.stamp_ns));
+              depth_after_colour_s(camera_, depth_.first_stamp_ns(), input.stamp_ns), references);
 
   // Associate and estimate: for one first motion after the other, until one is accepted.
   const DepthSampler depth = extraction.depth_sampler(input, config_->depth_noise);

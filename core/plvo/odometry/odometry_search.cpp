@@ -15,7 +15,8 @@ namespace {
 // search only.
 [[gnu::noinline]] void search_from_lost(const Window& window, const CurrentFrame& frame,
                                         ReferenceTracking& tracking, TrackedMotion& tracked) {
-  const PredictedMotion predicted = predict_from_lost(window, frame);
+  Reference lost;
+  const PredictedMotion predicted = predict_from_lost(window, frame, lost);
   search_motion({frame.context, frame.extraction, frame.depth, predicted, frame.features, frame.prior},
                 tracking, tracked);
   if (tracked.ok()) tracked.base = {MotionBase::Kind::kLost, window.lost()};

@@ -48,7 +48,8 @@ double depth_after_colour_s(const CameraModel& camera, std::int64_t depth_stamp_
 
 [[gnu::noinline]] PredictedMotion predict(const Window& window, const CameraModel& camera,
                                           std::int64_t stamp_ns, const PropagatedPrior& sensed,
-                                          double depth_after_colour_s) {
+                                          double depth_after_colour_s,
+                                          std::span<Reference, kMaxReferences> references) {
   PredictedMotion predicted;
   predicted.sensed = sensed;
   predicted.depth_after_colour_s = depth_after_colour_s;
@@ -56,13 +57,15 @@ double depth_after_colour_s(const CameraModel& camera, std::int64_t depth_stamp_
   predicted.last = window.from_keyframe(window.last());
   const Reference from_last = reference_of(window, window.last(), stamp_ns, predicted);
   predicted.exposure = current_exposure(camera, from_last.prior, from_last.T_current_predicted);
-  const Window::References references = window.references();
-  for (const int slot : references.span())
-    predicted.all_references[predicted.reference_count++] = reference_of(window, slot, stamp_ns, predicted);
+  const Window::References slots = window.references();
+  for (std::size_t r = 0; r < slots.count; ++r)
+    references[r] = reference_of(window, slots.slots[r], stamp_ns, predicted);
+  predicted.references = references.first(slots.count);
   return predicted;
 }
 
-[[gnu::noinline]] PredictedMotion predict_from_lost(const Window& window, const CurrentFrame& frame) {
+[[gnu::noinline]] PredictedMotion predict_from_lost(const Window& window, const CurrentFrame& frame,
+                                                    Reference& reference) {
   const StageContext& context = frame.context;
   const Window::Frame& lost = window[window.lost()];
   const std::int64_t elapsed = elapsed_ns(lost.features.stamp_ns, frame.stamp_ns());
@@ -71,8 +74,7 @@ double depth_after_colour_s(const CameraModel& camera, std::int64_t depth_stamp_
   predicted.sensed.restart();
   predicted.sensed.extend(frame.prior, Vector6::Zero(), static_cast<double>(elapsed) * 1e-9,
                           context.config.references);
-  Reference& reference = predicted.all_references[0];
-  predicted.reference_count = 1;
+  predicted.references = {&reference, 1};
   reference.features = &lost.features;
   if (predicted.sensed.known()) reference.T_current_predicted = predicted.sensed.T_current_last();
   reference.prior.since_last_ns = elapsed;

@@ -13,11 +13,12 @@ namespace plvo {
 double depth_after_colour_s(const CameraModel& camera, std::int64_t depth_stamp_ns, std::int64_t stamp_ns);
 
 // The motion since each of the window's references, and that of the camera during the exposure. sensed: the
-// motion since the last good frame by other sensors.
+// motion since the last good frame by other sensors. The prediction points to `references`.
 PredictedMotion predict(const Window& window, const CameraModel& camera, std::int64_t stamp_ns,
-                        const PropagatedPrior& sensed, double depth_after_colour_s);
+                        const PropagatedPrior& sensed, double depth_after_colour_s,
+                        std::span<Reference, kMaxReferences> references);
 // The motion since the lost frame, which is the frame before this one and the only reference.
-PredictedMotion predict_from_lost(const Window& window, const CurrentFrame& frame);
+PredictedMotion predict_from_lost(const Window& window, const CurrentFrame& frame, Reference& reference);
 
 // The motion since the last good frame of a camera that kept its velocity for as long as the interval over
 // which that was measured, and then stood still.

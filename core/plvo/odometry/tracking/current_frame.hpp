@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame that is being tracked, its references and prior, and the prediction of its motion before its features are
-// associated.
+// The frame that is being tracked, its references and prior, and the prediction of its motion before its
+// features are associated.
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "plvo/motion/motion_prior.hpp"
@@ -31,10 +30,7 @@ struct PredictedMotion {
   MotionReference last;    // pose of the last good frame, relative to the base
   Exposure exposure;       // motion of the camera during the exposure, if it goes on as before
   double depth_after_colour_s = 0;  // as in exposure.hpp
-  std::array<Reference, kMaxReferences> all_references;
-  std::size_t reference_count = 0;
-
-  std::span<const Reference> references() const { return std::span(all_references).first(reference_count); }
+  std::span<const Reference> references;
 };
 
 struct CurrentFrame {

@@ -106,7 +106,7 @@ bool is_findable(const Reference& reference) {
 // Not inlined: its variables are on the stack only during the search.
 [[gnu::noinline]] void search_motion(const CurrentFrame& current, ReferenceTracking& tracking,
                                      TrackedMotion& tracked) {
-  const std::span<const Reference> references = current.predicted.references();
+  const std::span<const Reference> references = current.predicted.references;
   const StageContext& context = current.context;
   const Config& config = context.config;
   const Reference& latest = references[latest_of(references)];

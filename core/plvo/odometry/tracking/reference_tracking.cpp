@@ -136,7 +136,7 @@ void ReferenceTracking::set_poses(std::span<const Reference> references, const M
   association.chained = references[0].chained;
   association.latest = latest_of(references);
   const Se3 T_base_first = references[0].pose.T_reference_base.inverse();
-  association.poses[kMaxReferences] = {last.T_reference_base * T_base_first, last.covariance};
+  association.poses[kLastGoodPose] = {last.T_reference_base * T_base_first, last.covariance};
   for (std::size_t r = 0; r < references.size(); ++r) {
     if (r > 0) association.poses[r] = references[r].pose;
     if (references[r].prior.reference_is_last) association.last_frame = r;
@@ -347,7 +347,7 @@ void ReferenceTracking::glance(std::span<const Reference> references, const Curr
   Association association;
   associate_by_motion(references, current, T_current_base, association, false);
   MotionStart start(&T_current_base, {}, true);
-  start.others = false;
+  start.search_beside = false;
   estimate(association, current, start, kRoughSolve, tracked);
 }
 

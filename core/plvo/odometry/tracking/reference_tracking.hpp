@@ -131,7 +131,7 @@ class ReferenceTracking {
     MotionReferences poses;
     bool chained = true;
     // Indices into the poses: the latest reference, and the last good frame.
-    std::size_t latest = 0, last_frame = kMaxReferences;
+    std::size_t latest = 0, last_frame = kLastGoodPose;
   };
   static void set_poses(std::span<const Reference> references, const MotionReference& last,
                         Association& association);
