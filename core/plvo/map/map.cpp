@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "plvo/base/heap_sort.hpp"
-#include "plvo/math/chi_square.hpp"
-#include "plvo/math/cholesky.hpp"
+#include "plvo/math/mahalanobis.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -24,10 +23,8 @@ constexpr std::uint32_t kLeastScoreUnplaced = PlaceIndex::kWholeVote;
 constexpr int kLeastAgreeing = 3, kLeastInliersTogether = 120;
 // A hypothesis that contradicts them counts if it has this share of their inliers.
 constexpr double kRivalShare = 0.5;
-// Probability with which a correct loop passes a test of its motion. The covariances of the odometry state
-// its errors within this factor.
-constexpr double kPlausibleLoop = 0.9999;
-constexpr double kCovarianceSlack = 4;  // of the variances
+// The covariances of the odometry state its errors within this factor of the variances.
+constexpr double kCovarianceSlack = 4;
 // Variances of the motion between two worlds, where nothing is known of it (m², rad²).
 constexpr double kUnknownPosition_m2 = 1e4, kUnknownRotation_rad2 = 10;
 // Two views are of the same place if the camera moved by less than this share of the scene's depth, or turned
@@ -41,9 +38,7 @@ constexpr int kRefreshedPerFrame = 2;
 
 // Whether δ is within a covariance.
 bool lies_within(const Vector6& delta, const Matrix6& covariance) {
-  Cholesky<6> cholesky;
-  return cholesky.factor(covariance) && cholesky.solve_lower(delta).squaredNorm() <=
-                                            kCovarianceSlack * chi_square_quantile(6, kPlausibleLoop);
+  return mahalanobis_squared<6>(delta, covariance) <= kCovarianceSlack * kMostPlausibleMotion;
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "plvo/math/chi_square.hpp"
 #include "plvo/math/cholesky.hpp"
+#include "plvo/math/mahalanobis.hpp"
 
 namespace plvo {
 namespace {
@@ -15,8 +15,6 @@ constexpr double kMotionFloor = 1e-8;
 constexpr double kGainShare = 1e-8, kGainEnough = 1e-6;
 // Another linearisation follows where a pose moved by more than this (m, rad).
 constexpr double kGraphMoved = 1e-3;
-// Probability with which the poses of a solved graph agree with a motion, by its χ² test.
-constexpr double kAgreeingMotion = 0.9999;
 
 Se3 displacement(const Vector6& x) { return {rotation_exp(x.tail<3>()), x.head<3>()}; }
 
@@ -57,7 +55,6 @@ void PoseGraph::clear() {
   size_ = loop_count_ = 0;
   next_id_ = 1;
   kernel_ = RobustKernel(RobustLoss::kHuber, 6);
-  most_agreeing_ = chi_square_quantile(6, kAgreeingMotion);
   phase_ = Phase::kIdle;
   changed_ = false;
 }
@@ -261,9 +258,7 @@ void PoseGraph::relax(Node& node, const Node& from, const Se3& T_from_node, cons
   const Vector3& t = node.T_map_keyframe.t;
   if (!(spread(covariance, t) < spread(node.covariance, t))) return;
   const Vector6 residual = difference(from.T_map_keyframe * T_from_node * node.T_map_keyframe.inverse());
-  Cholesky<6> cholesky;
-  if (cholesky.factor(between) && cholesky.solve_lower(residual).squaredNorm() <= most_agreeing_)
-    node.covariance = covariance;
+  if (mahalanobis_squared<6>(residual, between) <= kMostPlausibleMotion) node.covariance = covariance;
 }
 
 void PoseGraph::relax_along_chain() {

@@ -134,7 +134,6 @@ class PoseGraph {
   std::size_t loop_count_ = 0;
   std::uint32_t next_id_ = 1;
   RobustKernel kernel_;
-  double most_agreeing_ = 0;  // squared residual of a motion with which the poses agree
 
   Phase phase_ = Phase::kIdle;
   bool changed_ = false;   // since the last linearisation began

@@ -24,6 +24,7 @@ inline bool may_be_anywhere(const Matrix6& C) {
 
 // Whether C is finite, without negative variances, symmetric to the tolerance, and with no eigenvalue of the
 // correlation matrix below minus the tolerance.
+bool is_covariance(const Matrix3& C);
 bool is_covariance(const Matrix6& C);
 
 // Makes C a covariance; a valid one stays the same bit by bit. Otherwise C is made symmetric, rows and

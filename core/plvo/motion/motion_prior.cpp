@@ -15,12 +15,9 @@ Status refuse(const char* part, const char* requirement) {
 }
 
 bool is_positive_definite_covariance(const Matrix3& C) {
-  if (!C.allFinite()) return false;
-  const double largest = C.cwiseAbs().maxCoeff();
-  if (!((C - C.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * largest)) return false;
-  if (!(C.diagonal().minCoeff() >= kLeastVariance && C.diagonal().maxCoeff() <= kMostVariance)) return false;
   Cholesky<3> cholesky;
-  return cholesky.factor(C);
+  return is_covariance(C) && C.diagonal().minCoeff() >= kLeastVariance &&
+         C.diagonal().maxCoeff() <= kMostVariance && cholesky.factor(C);
 }
 
 constexpr const char* kCovariance =

@@ -3,23 +3,17 @@
 
 #include <algorithm>
 
-#include "plvo/math/chi_square.hpp"
-#include "plvo/math/cholesky.hpp"
+#include "plvo/math/mahalanobis.hpp"
 
 namespace plvo {
 namespace {
-
-// Probability with which a correct pose passes the test.
-constexpr double kPlausible = 0.9999;
 
 // Not inlined: its matrices would otherwise stay on the stack while the motion is solved for.
 [[gnu::noinline]] bool agree(const PoseWithCovariance& reference, const MotionEstimate& motion,
                              const PoseWithCovariance& b) {
   const PoseWithCovariance a = advance(reference, motion.T_current_reference, motion.C_H);
-  Cholesky<6> cholesky;
-  if (!cholesky.factor(a.covariance + b.covariance)) return false;
   const Vector6 apart = boxminus(a.T_world_camera, b.T_world_camera);
-  return cholesky.solve_lower(apart).squaredNorm() <= chi_square_quantile(6, kPlausible);
+  return mahalanobis_squared<6>(apart, a.covariance + b.covariance) <= kMostPlausibleMotion;
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr std::size_t member_count() {
 template <typename Aggregate>
 auto members(Aggregate& of) {
   constexpr std::size_t kCount = member_count<std::remove_const_t<Aggregate>>();
-  static_assert(kCount >= 1 && kCount <= 18, "members(): add a case for this number of members");
+  static_assert(kCount >= 1 && kCount <= 20, "members(): add a case for this number of members");
   // clang-format off
   if constexpr (kCount == 1) { auto& [a] = of; return std::tie(a); }
   else if constexpr (kCount == 2) { auto& [a, b] = of; return std::tie(a, b); }
@@ -67,9 +67,15 @@ auto members(Aggregate& of) {
   } else if constexpr (kCount == 17) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = of;
     return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
-  } else {
+  } else if constexpr (kCount == 18) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = of;
     return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
+  } else if constexpr (kCount == 19) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s] = of;
+    return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s);
+  } else {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = of;
+    return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t);
   }
   // clang-format on
 }
