@@ -127,7 +127,7 @@ class Odometry {
   KeyframeView keyframe() const;
 
  private:
-  // The steps of a frame, in their order. Before update() none changes the state.
+  // The steps of a frame, in their order. Before update() none changes the window or the world.
   Status check(const RgbdFrame& input, const MotionPrior& prior) const;
   TrackResult process(const RgbdFrame& input, const MotionPrior& prior);
   PropagatedPrior propagate(std::int64_t stamp_ns, const MotionPrior& prior) const;
