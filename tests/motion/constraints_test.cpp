@@ -293,13 +293,11 @@ TEST(Theorem1, FusionBeatsEitherKind) {
     const SimulatedPair pair = test::simulate(gaussian, 30, 12);
     const MotionEstimate estimate = bench.estimate(pair);
     ASSERT_EQ(estimate.status, StatusCode::kOk);
-    const Matrix6 of_points = test::information(bench.points[0], estimate.T_current_reference);
-    const Matrix6 of_lines = test::information(bench.lines[0], estimate.T_current_reference);
-    // C_H is that of the state before the last step.
-    EXPECT_LT((estimate.C_H * (of_points + of_lines) - Matrix6::Identity()).norm(), 1e-2);
+    const Matrix6 sum = estimate.information[0] + estimate.information[1];
+    EXPECT_LT((estimate.C_H * sum - Matrix6::Identity()).norm(), 1e-6);
     const DenseVector H = test::symmetric_eigenvalues(estimate.C_H);
-    const DenseVector P = test::symmetric_eigenvalues(test::inverse(of_points));
-    const DenseVector L = test::symmetric_eigenvalues(test::inverse(of_lines));
+    const DenseVector P = test::symmetric_eigenvalues(test::inverse(estimate.information[0]));
+    const DenseVector L = test::symmetric_eigenvalues(test::inverse(estimate.information[1]));
     for (int i = 0; i < 6; ++i) {
       EXPECT_LT(H[i], P[i]);
       EXPECT_LT(H[i], L[i]);

@@ -167,22 +167,6 @@ inline void flag_all(ConstraintSet& set) {
   for (std::size_t i = 0; i < set.size(); ++i) set.inliers()[i] = set.usable(i) ? 1 : 0;
 }
 
-inline std::size_t usable(const ConstraintSet& set) {
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < set.size(); ++i) n += set.usable(i) ? 1 : 0;
-  return n;
-}
-
-// Schur complement of the inliers of one set on the motion: C_P⁻¹ (14) or C_L⁻¹ (19), with the weights of the
-// estimate by default.
-inline Matrix6 information(ConstraintSet& set, const Se3& T) {
-  const RobustKernel kernel(MotionConfig().robust ? RobustLoss::kHuber : RobustLoss::kNone, set.dof());
-  JointInformation sum;
-  set.begin(T, {}, kernel, 1);
-  (void)set.linearize(T, {}, kernel, sum);
-  return sum.H.block<6, 6>(0, 0);
-}
-
 struct Solution {
   LmSummary summary;
   Se3 T;

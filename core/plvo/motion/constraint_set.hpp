@@ -24,8 +24,8 @@ inline constexpr double kMaxVarianceM2 = 1.0;
 // The contribution of one match to a minimal set: a pair of points or a pair of lines. A line is a point on
 // it and a unit direction of unknown sign. The sigmas serve only to reject degenerate or inconsistent sets.
 struct Primitive {
-  enum class Shape : std::uint8_t { kPoint, kLine };
-  Shape shape = Shape::kPoint;
+  enum class Shape : std::uint8_t { kNone, kPoint, kLine };  // kNone: takes no part in minimal sets
+  Shape shape = Shape::kNone;
   Vector3 p_reference, p_current;
   Vector3 d_reference, d_current;
   double sigma_p_m = 0;    // approximate SD of p_reference − p_current along any one direction

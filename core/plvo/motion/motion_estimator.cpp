@@ -56,7 +56,7 @@ bool invert_information(const Matrix6& H, const MotionConfig& config, Matrix6& C
 // reset() and forget_motion() are separate functions, because a temporary estimate would otherwise stay on
 // the stack during the next estimate.
 [[gnu::noinline]] void reset(MotionEstimate& estimate) {
-  // Constructs in place, which saves the stack of a temporary.
+  // Constructs in place, which saves the 3 kB of stack of a temporary.
   ::new (static_cast<void*>(&estimate)) MotionEstimate;
 }
 
@@ -72,9 +72,11 @@ void forget_motion(MotionEstimate& estimate) {
   if (estimate.lm.status == LmStatus::kNotFinite) estimate.lm.initial_cost = estimate.lm.final_cost = 0;
 }
 
-void count(const CostTerms& terms, MotionEstimate& estimate) {
+void count(std::span<ConstraintSet* const> sets, const CostTerms& terms, MotionEstimate& estimate) {
   for (std::size_t i = 0; i < terms.size(); ++i)
     for (const std::uint8_t flag : terms[i].inliers()) estimate.inliers[i] += flag;
+  for (std::size_t s = 0; s < sets.size(); ++s)
+    for (std::size_t i = 0; i < sets[s]->size(); ++i) estimate.usable[s] += sets[s]->usable(i) ? 1 : 0;
 }
 
 void clear_flags(const CostTerms& terms) {
@@ -90,7 +92,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
       MotionProblem::make_kernels(terms, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
   solving.references = references;
   Ransac ransac(sets, terms, solving.references, config, kernels, scratch, solving);
-  if (ransac.usable() < 3 || static_cast<int>(ransac.usable()) < config.min_inliers)
+  if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < config.min_inliers)
     return StatusCode::kTooFewFeatures;
   const double least_share = kMinInlierShare * static_cast<double>(ransac.usable());
   const auto consensus = [&] {
@@ -172,6 +174,8 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
   estimate.evidence = estimate.explained * ransac.evidence();
   status = refine(lm);
   if (status != StatusCode::kOk) return status;
+  for (std::size_t i = 0; i < terms.size() && i < kInformedTerms; ++i)
+    estimate.information[i] = problem.information(i);
   estimate.references = problem.references();
   // An undetermined motion does not converge either. kDegenerate is tested first because it is the cause.
   if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||
@@ -215,7 +219,7 @@ void estimate_motion(std::span<ConstraintSet* const> sets, std::span<CostTerm* c
     clear_flags(terms);
     forget_motion(estimate);
   }
-  count(terms, estimate);
+  count(sets, terms, estimate);
 }
 
 }  // namespace plvo

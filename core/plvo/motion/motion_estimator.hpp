@@ -22,9 +22,9 @@
 namespace plvo {
 
 struct MotionEstimate {
-  // kOk; kTooFewFeatures: fewer than three usable matches, or fewer than min_inliers; kNoConsensus;
-  // kDegenerate; kNotConverged; kOutOfMemory. Every number here is finite whatever the status; unless it is
-  // kOk, T is the identity and C_H is kUnknownVariance on the diagonal.
+  // kOk; kTooFewFeatures: fewer than three usable matches that may form a minimal set, or fewer than
+  // min_inliers; kNoConsensus; kDegenerate; kNotConverged; kOutOfMemory. Every number here is finite whatever
+  // the status; unless it is kOk, T is the identity and C_H is kUnknownVariance on the diagonal.
   StatusCode status = StatusCode::kTooFewFeatures;
   Se3 T_current_reference;  // X' = R X + t, equation (11)
   // Evidence (coverage.hpp) that the motion explains, in m, and its share of that of all matches.
@@ -39,9 +39,13 @@ struct MotionEstimate {
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
   // Σ⁻¹ J)⁻¹; m², m rad, rad². contain() adds the difference from another motion.
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
+  // Information matrices of the first kInformedTerms terms, in their order: C_P⁻¹ (14), C_L⁻¹ (19), …; their
+  // sum is C_H⁻¹ (26), where C_H contains no other motion. Zero for an empty term.
+  std::array<Matrix6, kInformedTerms> information = zero_matrices<kInformedTerms>();
   ReferenceInformation references;       // information of all terms, given the nuisance parameters
   NuisanceEstimate shared;               // zero unless kOk
   std::array<int, kMaxTerms> inliers{};  // the flags are in each term's inliers()
+  std::array<int, kMaxConstraintSets> usable{};
   RansacSummary ransac;
   LmSummary lm;
 

@@ -76,6 +76,7 @@ void MotionProblem::start(const CostTerms& terms, const MotionReferences& refere
   candidate_inverse_.setZero();
   gain_.setZero();
   candidate_gain_.setZero();
+  for (Matrix6& information : information_) information.setZero();
   of_references_ = {};
   for (std::size_t r = 0; r < kMaxPoses; ++r) candidate_moved_[r] = references_[r].moved;
   for (PoseGain& gain : pose_gain_) gain.setZero();
@@ -126,6 +127,7 @@ double MotionProblem::add_terms(std::size_t r, const Se3& T, bool& any) {
     any = true;
     of_term_.set_zero();
     cost += share_[i] * term.linearize(T, shared_, kernels_[i], of_term_);
+    if (i < kInformedTerms) candidate_information_[i] = share_[i] * of_term_.H.block<6, 6>(0, 0);
     of_reference_.H += share_[i] * of_term_.H;
     of_reference_.g += share_[i] * of_term_.g;
   }
@@ -220,6 +222,7 @@ void MotionProblem::accept() {
   shared_.value = candidate_shared_;
   inverse_ = candidate_inverse_;
   gain_ = candidate_gain_;
+  information_ = candidate_information_;
   of_references_ = candidate_of_references_;
 }
 

@@ -20,8 +20,10 @@ inline constexpr std::size_t kLastGoodPose = kMaxReferences;
 inline constexpr std::size_t kMaxPoses = kMaxReferences + 1;
 // Points and lines of each reference.
 inline constexpr std::size_t kMaxConstraintSets = 2 * kMaxReferences;
-// These, the propagated prior, and the surfaces of each reference.
+// These, the propagated prior, then the surfaces of each reference.
 inline constexpr std::size_t kMaxTerms = kMaxConstraintSets + 1 + kMaxReferences;
+// The information is stored for the first terms only: all but the surfaces.
+inline constexpr std::size_t kInformedTerms = kMaxConstraintSets + 1;
 
 // The terms of the cost, in a fixed order: the sets that RANSAC draws from, then all others. Terms beyond the
 // capacity are left out.
@@ -74,7 +76,7 @@ class MotionProblem {
   // One kernel per term. They are made once because computing the quantile takes longer than a residual.
   static Kernels make_kernels(const CostTerms& terms, RobustLoss loss);
 
-  // To be followed by start(). The object takes 12 kB, so the core keeps one in the arena and reuses it.
+  // To be followed by start(). The object takes 16 kB, so the core keeps one in the arena and reuses it.
   MotionProblem() = default;
   MotionProblem(const CostTerms& terms, const MotionReferences& references, const NuisanceParameters& shared,
                 const Kernels& kernels, const Se3& T) {
@@ -102,6 +104,9 @@ class MotionProblem {
   const MotionReferences& poses() const { return references_; }
   // The nuisance parameters at the accepted state, given the covariance of the motion.
   NuisanceEstimate shared(const Matrix6& covariance) const;
+  // The Schur complement of one term at the accepted state, given the nuisance parameters: C_P⁻¹ (14), C_L⁻¹
+  // (19). term < kInformedTerms.
+  const Matrix6& information(std::size_t term) const { return information_[term]; }
   // The information of all terms at the accepted state, given the nuisance parameters.
   const ReferenceInformation& references() const { return of_references_; }
 
@@ -131,6 +136,7 @@ class MotionProblem {
   // Covariance of the nuisance parameters given the motion, and their derivative with respect to the motion.
   SharedMatrix inverse_, candidate_inverse_;
   SharedGain gain_, candidate_gain_;
+  std::array<Matrix6, kInformedTerms> information_, candidate_information_;
   ReferenceInformation of_references_, candidate_of_references_;
   // Sums of a linearisation: over all references, over one reference, over one term of it.
   JointInformation sum_, of_reference_, of_term_;
