@@ -92,8 +92,7 @@ Window::Kept still_good(const Window& window, const ReferenceTracking& tracking,
            still_seen(features, tracking.tracks(index), share);
   };
   Window::Kept kept;
-  kept.older =
-      all && window.has_older() && good(window.older(), both ? 2 : 1, references.older_inlier_ratio);
+  kept.older = all && window.has_older() && good(window.older(), both ? 2 : 1, references.older_inlier_ratio);
   kept.keyframe =
       references.policy != ReferencePolicy::kPreviousFrame &&
       good(base.slot, 0, is_window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);

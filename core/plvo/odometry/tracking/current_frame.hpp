@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame that is being tracked, its references and prior, and the prediction of its motion before its features are
-// associated.
+// The frame that is being tracked, its references and prior, and the prediction of its motion before its
+// features are associated.
 #pragma once
 
 #include <span>

@@ -66,8 +66,7 @@ void Window::move_last(const PoseWithCovariance& pose, const Matrix6& covariance
 
 // Not inlined: its matrices would otherwise stay on the stack during the search for that keyframe.
 [[gnu::noinline]] void Window::relocalise(int slot, const MotionEstimate& motion) {
-  const PoseWithCovariance pose =
-      plvo::advance((*this)[slot].pose, motion.T_current_reference, motion.C_H);
+  const PoseWithCovariance pose = plvo::advance((*this)[slot].pose, motion.T_current_reference, motion.C_H);
   move_last(pose, inverse_covariance(from_keyframe(last_).T_reference_base, last_motion_.total()));
   kept_.drop(slot);
 }

@@ -107,8 +107,7 @@ Se3 coasted_motion(const Window& window, std::int64_t stamp_ns) {
                                         const Se3& T_current_last, const Matrix6& covariance,
                                         const MotionPrior& prior, bool given_up) {
   const bool chained = window.has_keyframe() && !given_up;
-  const Se3 T_last_reference =
-      chained ? window.from_keyframe(window.last()).T_reference_base : Se3{};
+  const Se3 T_last_reference = chained ? window.from_keyframe(window.last()).T_reference_base : Se3{};
   SensedPose result;
   result.T_camera_reference = T_current_last * T_last_reference;
   result.motion_covariance =
