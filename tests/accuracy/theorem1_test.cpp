@@ -54,7 +54,8 @@ class Pairs {
     FeatureExtraction& extraction = modules_.extraction;
     const DepthSampler depth = extraction.depth_sampler(frame, config_.depth_noise);
     PredictedMotion predicted;
-    const CurrentFrame current{context, extraction, depth, predicted, modules_.frames[slot_]};
+    const MotionPrior prior;
+    const CurrentFrame current{context, extraction, depth, predicted, modules_.frames[slot_], prior};
     const Limits limits = Limits::vga();
     current.features.clear(
         {static_cast<std::size_t>(limits.keypoints), static_cast<std::size_t>(limits.segments)});

@@ -39,8 +39,8 @@ struct MotionEstimate {
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
   // Σ⁻¹ J)⁻¹; m², m rad, rad². contain() adds the difference from another motion.
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
-  // Information matrices of the first kInformedTerms terms, in their order: C_P⁻¹ (14), C_L⁻¹ (19), …; their
-  // sum is C_H⁻¹ (26), where C_H contains no other motion. Zero for an empty term.
+  // Information matrices of the first kInformedTerms terms, in their order: C_P⁻¹ (14), C_L⁻¹ (19). If there
+  // are no other terms and C_H contains no other motion, their sum is C_H⁻¹ (26). Zero for an empty term.
   std::array<Matrix6, kInformedTerms> information = zero_matrices<kInformedTerms>();
   ReferenceInformation references;       // information of all terms, given the nuisance parameters
   NuisanceEstimate shared;               // zero unless kOk

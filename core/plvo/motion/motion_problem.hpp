@@ -22,8 +22,8 @@ inline constexpr std::size_t kMaxPoses = kMaxReferences + 1;
 inline constexpr std::size_t kMaxConstraintSets = 2 * kMaxReferences;
 // These, the propagated prior, then the surfaces of each reference.
 inline constexpr std::size_t kMaxTerms = kMaxConstraintSets + 1 + kMaxReferences;
-// The information is stored for the first terms only: all but the surfaces.
-inline constexpr std::size_t kInformedTerms = kMaxConstraintSets + 1;
+// The information is stored for the first terms only: points and lines of the base.
+inline constexpr std::size_t kInformedTerms = 2;
 
 // The terms of the cost, in a fixed order: the sets that RANSAC draws from, then all others. Terms beyond the
 // capacity are left out.
