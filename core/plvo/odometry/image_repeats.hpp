@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds images that a sensor delivers again under a later stamp. Drivers do this when no new image has come,
-// and so do recordings of streams with different rates. Two exposures of a real sensor never give the same
-// bits, because of noise. A fixed, staggered grid of pixels is compared, by a 64-bit hash of each image.
+// Finds images that a sensor delivers again under a later stamp, and a depth stream that has stopped. Drivers
+// do this when no new image has come, and so do recordings of streams with different rates. Two exposures of
+// a real sensor never give the same bits, because of noise. A fixed, staggered grid of pixels is compared, by
+// a 64-bit hash of each image.
 //
 // False alarms: one pixel in 49 is looked at, so images of a moving camera that agree there have no texture
 // to track. Two different grids have the same hash with a probability of 2^-64.
