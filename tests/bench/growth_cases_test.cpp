@@ -45,13 +45,13 @@ TEST(GrowthCases, VaryOneParameterAtATime) {
 
 TEST(GrowthCases, CoverTheRequestedTables) {
   GrowthOptions options;
-  options.tables = "sequences";
+  options.tables = {"sequences"};
   GrowthPlan plan;
   ASSERT_TRUE(plan_growth(options, {{"/recorded", "recorded", "tum-fr1"}}, plan).ok());
   EXPECT_TRUE(plan.tables.empty());
   ASSERT_EQ(plan.sequences.rows.size(), 2U);
   EXPECT_FALSE(plan.cases[plan.sequences.rows[1].measured].rendering) << "a recorded one is not rendered";
-  options.tables = "sizes,moons";
+  options.tables = {"sizes", "moons"};
   EXPECT_EQ(plan_growth(options, {}, plan).code(), StatusCode::kInvalidArgument);
 }
 

@@ -66,25 +66,25 @@ class RowTimeCompensationOfAPair : public testing::Test {
       world_.push_back(back_project(camera_.pinhole, uniform(150, 500), uniform(100, 380), uniform(1, 4)));
   }
 
-  PairPrior prior(const Motion& motion) const {
-    PairPrior prior;
-    prior.since_last_ns = kFrame_ns;
-    prior.reference = {mean_velocity(motion.at(0) * motion.at(-kFrame_s).inverse(), kFrame_s), kFrame_ns};
-    prior.last = prior.reference;
-    return prior;
+  PairTiming timing_of(const Motion& motion) const {
+    PairTiming timing;
+    timing.since_last_ns = kFrame_ns;
+    timing.reference = {mean_velocity(motion.at(0) * motion.at(-kFrame_s).inverse(), kFrame_s), kFrame_ns};
+    timing.last = timing.reference;
+    return timing;
   }
 
   // RMS distance (m) of the current points from the moved points of the reference.
-  double disagreement(const Motion& motion, const PairPrior& prior, const CameraModel& camera) {
+  double disagreement(const Motion& motion, const PairTiming& timing, const CameraModel& camera) {
     see(camera_, motion, 0, world_, reference_.features);
     const double interval_s =
-        prior.reference_is_last ? static_cast<double>(prior.since_last_ns) * 1e-9 : kFrame_s;
+        timing.reference_is_last ? static_cast<double>(timing.since_last_ns) * 1e-9 : kFrame_s;
     see(camera_, motion, interval_s, world_, current_.features);
     const Se3 T = motion.at(interval_s) * motion.at(0).inverse();
     std::vector<std::byte> block(1 << 20);
     Arena scratch(block);
     const RowTimeCompensation features =
-        compensate_row_times(camera, prior, T, reference_.features, current_.features, scratch);
+        compensate_row_times(camera, timing, T, reference_.features, current_.features, scratch);
     double sum = 0;
     for (std::size_t i = 0; i < world_.size(); ++i) {
       const Vector3 now = features.current_exposure.at_mid_exposure(current_.features.points.points[i].p);
@@ -100,23 +100,23 @@ class RowTimeCompensationOfAPair : public testing::Test {
 
 TEST_F(RowTimeCompensationOfAPair, RemovesAConstantRotationCompletely) {
   const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
-  const double raw = disagreement(steady, prior(steady), CameraModel{});
-  const double corrected = disagreement(steady, prior(steady), camera_);
+  const double raw = disagreement(steady, timing_of(steady), CameraModel{});
+  const double corrected = disagreement(steady, timing_of(steady), camera_);
   EXPECT_LT(corrected, 1e-4);
   EXPECT_LT(corrected, 0.1 * raw);
 }
 
 TEST_F(RowTimeCompensationOfAPair, RemovesThreeQuartersOfAnAcceleration) {
   const Motion faster{{0, 0.3, 0}, {0, 9, 0}, Vector3::Zero()};
-  const double raw = disagreement(faster, prior(faster), CameraModel{});
-  const double corrected = disagreement(faster, prior(faster), camera_);
+  const double raw = disagreement(faster, timing_of(faster), CameraModel{});
+  const double corrected = disagreement(faster, timing_of(faster), camera_);
   EXPECT_GT(raw, 1e-3) << "the shutter must matter for the test to mean something";
   EXPECT_LT(corrected, 0.35 * raw);
 }
 
 TEST_F(RowTimeCompensationOfAPair, UsesOneVelocityForTheFirstPair) {
   const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
-  PairPrior first = prior(steady);
+  PairTiming first = timing_of(steady);
   first.reference = first.last = {};
   EXPECT_LT(disagreement(steady, first, camera_), 1e-4);
 }
@@ -124,7 +124,7 @@ TEST_F(RowTimeCompensationOfAPair, UsesOneVelocityForTheFirstPair) {
 TEST_F(RowTimeCompensationOfAPair, AKeyframeKeepsItsOwnVelocity) {
   // The last good frame lies half-way; since then the angular velocity has increased.
   const Motion faster{{0, 0.3, 0}, {0, 9, 0}, Vector3::Zero()};
-  PairPrior keyframe = prior(faster);
+  PairTiming keyframe = timing_of(faster);
   keyframe.reference_is_last = false;
   keyframe.since_last_ns = kFrame_ns / 2;
   keyframe.T_reference_last = motion_between(faster, kFrame_s / 2, 0);
@@ -136,7 +136,7 @@ TEST_F(RowTimeCompensationOfAPair, AKeyframeKeepsItsOwnVelocity) {
 
 TEST_F(RowTimeCompensationOfAPair, TwoFramesASecondAreCompensatedAsWell) {
   const Motion steady{{0.01, 0.09, -0.03}, Vector3::Zero(), {0.2, 0, 0.1}};
-  PairPrior slow = prior(steady);
+  PairTiming slow = timing_of(steady);
   slow.since_last_ns = 500'000'000;
   EXPECT_LT(disagreement(steady, slow, camera_), 1e-4);
 }

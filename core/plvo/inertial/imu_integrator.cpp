@@ -128,7 +128,7 @@ RotationPrior ImuIntegrator::rotation(double seconds, const Vector3& angle) cons
   }
   const Matrix3& R = turn_;
   prior.covariance = R * variance.asDiagonal() * R.transpose();
-  prior.covariance = Matrix3(0.5 * (prior.covariance + Matrix3(prior.covariance.transpose())));
+  prior.covariance = symmetric<3>(prior.covariance);
   return prior;
 }
 
@@ -207,7 +207,7 @@ Matrix3 ImuIntegrator::offset_error_of_run() const {
 void ImuIntegrator::finish_run() {
   const Matrix3 S = noise_of_run() + offset_error_of_run();
   Cholesky<3> cholesky;
-  if (!cholesky.factor(Matrix3(0.5 * (S + Matrix3(S.transpose()))))) return;
+  if (!cholesky.factor(symmetric<3>(S))) return;
   const Matrix3 inverse = cholesky.inverse();
   const Matrix3 R_by_vision = run_.last.R_camera_reference * run_.first.R_camera_reference.transpose();
   Vector3 e = rotation_log(R_by_vision * run_.R_last_first.transpose());

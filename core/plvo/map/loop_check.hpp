@@ -10,7 +10,6 @@
 #include "plvo/map/map_keyframe.hpp"
 #include "plvo/motion/motion_estimator.hpp"
 #include "plvo/odometry/config.hpp"
-#include "plvo/odometry/tracking/line_tracking.hpp"
 #include "plvo/points/point_match.hpp"
 
 namespace plvo {

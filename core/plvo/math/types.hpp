@@ -32,6 +32,12 @@ std::array<Matrix6, Count> zero_matrices() {
   return matrices;
 }
 
+// (M + Mᵀ) / 2, which removes the rounding of a product that is symmetric.
+template <int N>
+Matrix<N, N> symmetric(const Matrix<N, N>& M) {
+  return 0.5 * (M + Matrix<N, N>(M.transpose()));
+}
+
 constexpr bool is_finite(double x) { return x - x == 0; }
 
 }  // namespace plvo

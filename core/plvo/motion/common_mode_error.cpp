@@ -29,7 +29,7 @@ Matrix6 common_mode_error(const ReferenceInformation& information, const Matrix6
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) d(i, j) = k[i] * d(i, j) * k[j] + (i == j ? added[i] : 0);
   const Matrix6 sum = T.lazyProduct(d).eval().lazyProduct(T.transpose());
-  return 0.5 * (sum + sum.transpose());
+  return symmetric<6>(sum);
 }
 
 }  // namespace plvo

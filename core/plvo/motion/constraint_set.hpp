@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The matches of one kind of feature (points, lines, …) with one reference: candidates that RANSAC draws from
-// and judges, and a term of the cost that the refinement minimises over those that agree. A new kind of
-// feature needs only one more implementation.
+// A term of the cost whose matches RANSAC draws from and judges: the points, or the lines, that one reference
+// has in common with the current frame. The refinement minimises the cost of the matches that agree.
 //
 // T = T_current_reference maps reference coordinates to current coordinates, X' = R X + t, equation (11). Its
 // perturbation ξ = (v, ω) is the ⊞ of se3.hpp.
@@ -24,8 +23,8 @@ inline constexpr double kMaxVarianceM2 = 1.0;
 // The contribution of one match to a minimal set: a pair of points or a pair of lines. A line is a point on
 // it and a unit direction of unknown sign. The sigmas serve only to reject degenerate or inconsistent sets.
 struct Primitive {
-  enum class Shape : std::uint8_t { kNone, kPoint, kLine };  // kNone: takes no part in minimal sets
-  Shape shape = Shape::kNone;
+  enum class Shape : std::uint8_t { kPoint, kLine };
+  Shape shape = Shape::kPoint;
   Vector3 p_reference, p_current;
   Vector3 d_reference, d_current;
   double sigma_p_m = 0;    // approximate SD of p_reference − p_current along any one direction

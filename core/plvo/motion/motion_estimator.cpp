@@ -72,11 +72,9 @@ void forget_motion(MotionEstimate& estimate) {
   if (estimate.lm.status == LmStatus::kNotFinite) estimate.lm.initial_cost = estimate.lm.final_cost = 0;
 }
 
-void count(std::span<ConstraintSet* const> sets, const CostTerms& terms, MotionEstimate& estimate) {
+void count_inliers(const CostTerms& terms, MotionEstimate& estimate) {
   for (std::size_t i = 0; i < terms.size(); ++i)
     for (const std::uint8_t flag : terms[i].inliers()) estimate.inliers[i] += flag;
-  for (std::size_t s = 0; s < sets.size(); ++s)
-    for (std::size_t i = 0; i < sets[s]->size(); ++i) estimate.usable[s] += sets[s]->usable(i) ? 1 : 0;
 }
 
 void clear_flags(const CostTerms& terms) {
@@ -84,111 +82,152 @@ void clear_flags(const CostTerms& terms) {
     for (std::uint8_t& flag : terms[i].inliers()) flag = 0;
 }
 
-StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
-                 const MotionReferences& references, const MotionConfig& config, const LmOptions& lm,
-                 std::uint64_t seed, const MotionStart& start, std::span<RansacCandidate> scratch,
-                 MotionSolver& solving, MotionEstimate& estimate) {
-  const MotionProblem::Kernels kernels =
-      MotionProblem::make_kernels(terms, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
-  solving.references = references;
-  Ransac ransac(sets, terms, solving.references, config, kernels, scratch, solving);
-  if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < config.min_inliers)
-    return StatusCode::kTooFewFeatures;
-  const double least_share = kMinInlierShare * static_cast<double>(ransac.usable());
-  const auto consensus = [&] {
-    return ransac.inliers() >= config.min_inliers && ransac.inliers() >= least_share;
-  };
+// The motion that the consensus of the matches determines: a first motion with a consensus, another one
+// beside it if it explains too little, and the maximum-likelihood estimate over the consensus of the better
+// one.
+class ConsensusSolver {
+ public:
+  // start, references, config and solving must outlive this object.
+  ConsensusSolver(std::span<ConstraintSet* const> sets, const CostTerms& terms,
+                  const MotionReferences& references, const MotionConfig& config, std::uint64_t seed,
+                  const MotionStart& start, std::span<RansacCandidate> scratch, MotionSolver& solving,
+                  MotionEstimate& estimate)
+      : terms_(terms),
+        references_(references),
+        config_(config),
+        seed_(seed),
+        start_(start),
+        solving_(solving),
+        estimate_(estimate),
+        kernels_(MotionProblem::make_kernels(terms, config.robust ? RobustLoss::kHuber : RobustLoss::kNone)),
+        ransac_(sets, terms, solving.references, config, kernels_, scratch, solving),
+        least_inliers_(kMinInlierShare * static_cast<double>(ransac_.usable())),
+        shared_(start.shared) {}
 
-  Se3 T;
-  MotionProblem& problem = solving.problem;
-  LevenbergMarquardt<6>& solver = solving.solver;
-  NuisanceParameters shared = start.shared;
-  // Refines T over the flagged inliers.
-  const auto refine = [&](const LmOptions& options) {
-    if (!consensus()) return StatusCode::kNoConsensus;
-    problem.start(terms, solving.references, shared, kernels, T);
-    estimate.lm = solving.solve(options);
-    if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
+  StatusCode solve(const LmOptions& lm) {
+    if (ransac_.usable() < 3 || static_cast<int>(ransac_.usable()) < config_.min_inliers)
+      return StatusCode::kTooFewFeatures;
+    StatusCode status = find_first();
+    if (status != StatusCode::kOk) return status;
+    Vector6 apart = Vector6::Zero();
+    status = look_beside(apart);
+    if (status != StatusCode::kOk) return status;
+    estimate_.explained = ransac_.covered();
+    estimate_.evidence = estimate_.explained * ransac_.evidence();
+    status = refine(lm);
+    if (status != StatusCode::kOk) return status;
+    return conclude(apart);
+  }
+
+ private:
+  bool has_consensus() const {
+    return ransac_.inliers() >= config_.min_inliers && ransac_.inliers() >= least_inliers_;
+  }
+
+  // Refines T_ over the flagged inliers.
+  StatusCode refine(const LmOptions& options) {
+    if (!has_consensus()) return StatusCode::kNoConsensus;
+    MotionProblem& problem = solving_.problem;
+    problem.start(terms_, solving_.references, shared_, kernels_, T_);
+    estimate_.lm = solving_.solve(options);
+    if (estimate_.lm.status == LmStatus::kNotFinite || estimate_.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
-    T = problem.T_current_reference();
-    solving.references = problem.poses();
+    T_ = problem.T_current_reference();
+    solving_.references = problem.poses();
     Cholesky<6> cholesky;
-    if (cholesky.factor(solver.hessian())) estimate.shared = problem.shared(cholesky.inverse());
-    shared.value = estimate.shared.value;
+    if (cholesky.factor(solving_.solver.hessian())) estimate_.shared = problem.shared(cholesky.inverse());
+    shared_.value = estimate_.shared.value;
     return StatusCode::kOk;
-  };
-  // On return the inliers at the final thresholds are flagged.
-  const auto approach = [&](double scale) {
+  }
+
+  // Moves T_ to the motion of its consensus. On return the inliers at the final thresholds are flagged.
+  StatusCode approach(double scale) {
     for (int round = 0; round < kMaxWideRounds; ++round) {
-      ransac.judge(T, scale);
+      ransac_.judge(T_, scale);
       const StatusCode status = refine(LmOptions::one_step());
       if (status != StatusCode::kOk) return status;
-      if (solver.next_decrease() <= 0.5 * kFarSigmas * kFarSigmas) break;
+      if (solving_.solver.next_decrease() <= 0.5 * kFarSigmas * kFarSigmas) break;
       scale = kWiderThanRefined;
     }
-    ransac.judge(T, 1);
+    ransac_.judge(T_, 1);
     return StatusCode::kOk;
-  };
-  // Approaches the motion anew; what was estimated with another one is discarded.
-  const auto approach_from = [&](const Se3& from, double scale) {
-    solving.references = references;
-    shared = start.shared;
-    T = from;
+  }
+
+  // Discards what was estimated with another motion.
+  StatusCode approach_from(const Se3& from, double scale) {
+    solving_.references = references_;
+    shared_ = start_.shared;
+    T_ = from;
     return approach(scale);
-  };
-  Se3 first;
-  double scale = kWiderThanEstimated;
-  StatusCode status = StatusCode::kNoConsensus;
-  if (start.estimated) {
-    first = *start.prediction;
-    status = approach_from(first, scale);
-    if (status != StatusCode::kOk && status != StatusCode::kNoConsensus) return status;
   }
-  if (status != StatusCode::kOk || !consensus()) {
-    scale = kWiderThanRefined;
-    if (!ransac.run(seed, start.prediction, first, estimate.ransac)) return StatusCode::kNoConsensus;
-    status = approach_from(first, scale);
-    if (status != StatusCode::kOk) return status;
-  }
-  Vector6 apart = Vector6::Zero();
-  const double covered = ransac.covered();
-  estimate.contradicted = contradict(terms, T, solving.references);
-  if (start.search_beside && (covered < kWorldAtRest || estimate.contradicted)) {
-    apart = boxminus(T, first);
-    Se3 other = T;
-    const bool found = ransac.run_beside(seed, start.prediction, other, estimate.ransac) &&
-                       approach_from(other, kWiderThanRefined) == StatusCode::kOk && consensus();
-    const double covered_by_other = found ? ransac.covered() : 0;
-    apart = boxminus(T, first) - apart;
-    if (estimate.contradicted || !are_comparable(covered, covered_by_other)) apart.setZero();
-    const double least = estimate.contradicted ? kShareOfUncontradicted : covered;
-    estimate.is_other = covered_by_other > least && ransac.consensus_fixes_motion(seed);
-    if (estimate.is_other) {
-      estimate.contradicted = false;
-    } else {
-      status = approach_from(first, scale);
-      if (status != StatusCode::kOk) return status;
+
+  // From the prediction, if that was estimated, else or if its consensus is too small by RANSAC.
+  StatusCode find_first() {
+    if (start_.estimated) {
+      first_ = *start_.prediction;
+      first_scale_ = kWiderThanEstimated;
+      const StatusCode status = approach_from(first_, first_scale_);
+      if (status != StatusCode::kOk && status != StatusCode::kNoConsensus) return status;
+      if (status == StatusCode::kOk && has_consensus()) return status;
     }
+    first_scale_ = kWiderThanRefined;
+    if (!ransac_.run(seed_, start_.prediction, first_, estimate_.ransac)) return StatusCode::kNoConsensus;
+    return approach_from(first_, first_scale_);
   }
-  estimate.explained = ransac.covered();
-  estimate.evidence = estimate.explained * ransac.evidence();
-  status = refine(lm);
-  if (status != StatusCode::kOk) return status;
-  for (std::size_t i = 0; i < terms.size() && i < kInformedTerms; ++i)
-    estimate.information[i] = problem.information(i);
-  estimate.references = problem.references();
-  // An undetermined motion does not converge either. kDegenerate is tested first because it is the cause.
-  if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||
-      !invert_information(solver.hessian(), config, estimate.C_H))
-    return StatusCode::kDegenerate;
-  // kStalled counts as converged: no step lowers the cost any further.
-  if (!converged(estimate.lm.status) && estimate.lm.status != LmStatus::kStalled)
-    return StatusCode::kNotConverged;
-  estimate.contain(apart);
-  estimate.T_current_reference = T;
-  estimate.motions = motions_to_current(T, solving.references);
-  return StatusCode::kOk;
-}
+
+  // Takes another motion in the place of T_ if T_ explains too little or a prior contradicts it, and if the
+  // other one is better. apart: difference between the two, if they explain about the same.
+  StatusCode look_beside(Vector6& apart) {
+    const double covered = ransac_.covered();
+    estimate_.contradicted = contradict(terms_, T_, solving_.references);
+    if (!start_.search_beside || !(covered < kWorldAtRest || estimate_.contradicted)) return StatusCode::kOk;
+    const Vector6 moved = boxminus(T_, first_);
+    Se3 other = T_;
+    const bool found = ransac_.run_beside(seed_, start_.prediction, other, estimate_.ransac) &&
+                       approach_from(other, kWiderThanRefined) == StatusCode::kOk && has_consensus();
+    const double covered_by_other = found ? ransac_.covered() : 0;
+    if (!estimate_.contradicted && are_comparable(covered, covered_by_other))
+      apart = boxminus(T_, first_) - moved;
+    const double least = estimate_.contradicted ? kShareOfUncontradicted : covered;
+    estimate_.is_other = covered_by_other > least && ransac_.consensus_fixes_motion(seed_);
+    if (!estimate_.is_other) return approach_from(first_, first_scale_);
+    estimate_.contradicted = false;
+    return StatusCode::kOk;
+  }
+
+  // Writes the motion and its covariance, if the consensus determines them.
+  StatusCode conclude(const Vector6& apart) {
+    for (std::size_t i = 0; i < terms_.size() && i < kInformedTerms; ++i)
+      estimate_.information[i] = solving_.problem.information(i);
+    estimate_.references = solving_.problem.references();
+    // An undetermined motion does not converge either. kDegenerate is tested first because it is the cause.
+    if (!T_.is_finite() || !ransac_.consensus_fixes_motion(seed_) ||
+        !invert_information(solving_.solver.hessian(), config_, estimate_.C_H))
+      return StatusCode::kDegenerate;
+    // kStalled counts as converged: no step lowers the cost any further.
+    if (!converged(estimate_.lm.status) && estimate_.lm.status != LmStatus::kStalled)
+      return StatusCode::kNotConverged;
+    estimate_.contain(apart);
+    estimate_.T_current_reference = T_;
+    estimate_.motions = motions_to_current(T_, solving_.references);
+    return StatusCode::kOk;
+  }
+
+  const CostTerms& terms_;
+  const MotionReferences& references_;
+  const MotionConfig& config_;
+  std::uint64_t seed_;
+  const MotionStart& start_;
+  MotionSolver& solving_;
+  MotionEstimate& estimate_;
+  MotionProblem::Kernels kernels_;
+  Ransac ransac_;
+  double least_inliers_;
+  NuisanceParameters shared_;
+  Se3 T_;
+  Se3 first_;               // where the search for the first motion began
+  double first_scale_ = 0;  // of its first thresholds
+};
 
 }  // namespace
 
@@ -211,15 +250,17 @@ void estimate_motion(std::span<ConstraintSet* const> sets, std::span<CostTerm* c
   const std::span<RansacCandidate> scratch = take_ransac_scratch(arena, matches);
   const std::span<MotionSolver> solver = take_solver(arena);
   reset(estimate);
-  estimate.status =
-      scratch.size() < matches || solver.empty()
-          ? StatusCode::kOutOfMemory
-          : solve(sets, terms, references, config, lm, seed, start, scratch, solver[0], estimate);
+  estimate.status = StatusCode::kOutOfMemory;
+  if (scratch.size() == matches && !solver.empty()) {
+    solver[0].references = references;
+    estimate.status =
+        ConsensusSolver(sets, terms, references, config, seed, start, scratch, solver[0], estimate).solve(lm);
+  }
   if (estimate.status != StatusCode::kOk) {
     clear_flags(terms);
     forget_motion(estimate);
   }
-  count(sets, terms, estimate);
+  count_inliers(terms, estimate);
 }
 
 }  // namespace plvo

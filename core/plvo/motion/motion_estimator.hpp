@@ -22,9 +22,9 @@
 namespace plvo {
 
 struct MotionEstimate {
-  // kOk; kTooFewFeatures: fewer than three usable matches that may form a minimal set, or fewer than
-  // min_inliers; kNoConsensus; kDegenerate; kNotConverged; kOutOfMemory. Every number here is finite whatever
-  // the status; unless it is kOk, T is the identity and C_H is kUnknownVariance on the diagonal.
+  // kOk; kTooFewFeatures: fewer usable matches than three or than min_inliers; kNoConsensus; kDegenerate;
+  // kNotConverged; kOutOfMemory. Every number here is finite whatever the status; unless it is kOk, T is the
+  // identity and C_H is kUnknownVariance on the diagonal.
   StatusCode status = StatusCode::kTooFewFeatures;
   Se3 T_current_reference;  // X' = R X + t, equation (11)
   // Evidence (coverage.hpp) that the motion explains, in m, and its share of that of all matches.
@@ -45,7 +45,6 @@ struct MotionEstimate {
   ReferenceInformation references;       // information of all terms, given the nuisance parameters
   NuisanceEstimate shared;               // zero unless kOk
   std::array<int, kMaxTerms> inliers{};  // the flags are in each term's inliers()
-  std::array<int, kMaxConstraintSets> usable{};
   RansacSummary ransac;
   LmSummary lm;
 

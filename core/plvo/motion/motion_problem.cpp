@@ -199,7 +199,7 @@ double MotionProblem::eliminate_pose(std::size_t r, const Matrix6& L) {
   candidate_gain_ = candidate_inverse_.lazyProduct(sum_.H.block<n, 6>(6, 0));
   const Matrix<6, n> coupling = sum_.H.block<6, n>(0, 6);
   const Matrix6 eliminated = coupling.lazyProduct(candidate_gain_);
-  sum_.H.block<6, 6>(0, 0) -= 0.5 * (eliminated + Matrix6(eliminated.transpose()));
+  sum_.H.block<6, 6>(0, 0) -= symmetric<6>(eliminated);
   sum_.g.head<6>() -= coupling.lazyProduct(step);
   return cost - 0.5 * g.dot(step);
 }

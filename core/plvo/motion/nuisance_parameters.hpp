@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors that all features of the current frame share. They do not average out over the features: without a
-// model of them they bias the estimate, and its covariance does not contain them. There are two kinds. Each
+// model of them they bias the estimate, and its covariance does not contain them. There are two groups. Each
 // is smooth over the image and has a Gaussian prior of mean zero:
 //
 //   angular rate – the error of the predicted angular velocity during the exposure; with a rolling shutter it
@@ -56,11 +56,11 @@ class NuisanceParameters {
   // No nuisance parameters.
   NuisanceParameters() = default;
   // SDs of the priors: angular-rate error in rad/s (no effect with a global shutter), depth error in metres
-  // at 1 m; 0 disables a kind. exposure: of the current frame.
+  // at 1 m; 0 disables a group. exposure: of the current frame.
   NuisanceParameters(const Exposure& exposure, double angular_rate_error_rad_per_s, double depth_m);
 
   bool any() const { return angular_rate_ > 0 || depth_ > 0; }
-  // Prior SD of parameter k; 0 if its kind is disabled.
+  // Prior SD of parameter k; 0 if its group is disabled.
   double sigma(int k) const { return k < NuisanceField::kAngularRate ? angular_rate_ : depth_; }
 
   // F(p).

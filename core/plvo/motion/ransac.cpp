@@ -30,10 +30,6 @@ constexpr int kLeastPromising = 5;
 constexpr double kInlierProbability = 0.99;  // that a true match of any kind passes the χ² test
 constexpr double kRansacConfidence = 0.999;  // that a set of true matches was drawn before stopping
 
-bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
-  return set.primitive(i).shape != Primitive::Shape::kNone;
-}
-
 }  // namespace
 
 Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
@@ -46,17 +42,14 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
       config_(config),
       kernels_(kernels),
       solver_(solver) {
-  for (const bool samplable : {true, false})
-    for (std::size_t s = 0; s < sets_.size(); ++s) {
-      const ConstraintSet& set = *sets_[s];
-      threshold_[s] = chi_square_quantile(set.dof(), kInlierProbability);
-      for (std::size_t i = 0; i < set.size() && usable_ < scratch.size(); ++i) {
-        if (!set.usable(i) || joins_minimal_sets(set, i) != samplable) continue;
-        scratch[usable_++] = {static_cast<std::uint8_t>(s), static_cast<std::uint16_t>(i), 0};
-        if (samplable) ++samplable_;
-      }
-    }
-  candidates_ = scratch.first(usable_);
+  std::size_t n = 0;
+  for (std::size_t s = 0; s < sets_.size(); ++s) {
+    const ConstraintSet& set = *sets_[s];
+    threshold_[s] = chi_square_quantile(set.dof(), kInlierProbability);
+    for (std::size_t i = 0; i < set.size() && n < scratch.size(); ++i)
+      if (set.usable(i)) scratch[n++] = {static_cast<std::uint8_t>(s), static_cast<std::uint16_t>(i), 0};
+  }
+  candidates_ = scratch.first(n);
   weigh();
 }
 
@@ -90,7 +83,7 @@ bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummar
   start(Gain::kMatch, summary);
   Se3 best;
   if (prediction != nullptr && prediction->is_finite()) consider(*prediction, best, summary);
-  sample(seed, samplable_, prediction != nullptr ? prediction->R : Matrix3::Identity(), best, summary);
+  sample(seed, usable(), prediction != nullptr ? prediction->R : Matrix3::Identity(), best, summary);
   if (!(summary.score > 0)) return false;
   T = best;
   return true;
@@ -153,10 +146,10 @@ bool Ransac::is_promising(const Se3& T, std::size_t n) const {
   return agreeing >= kLeastPromising;
 }
 
-// Moves the candidates that may form minimal sets and are no inliers to the front. Returns their number.
+// Moves the candidates that are no inliers to the front. Returns their number.
 std::size_t Ransac::move_inliers_back() {
   std::size_t n = 0;
-  for (std::size_t k = 0; k < samplable_; ++k) {
+  for (std::size_t k = 0; k < usable(); ++k) {
     const RansacCandidate candidate = candidates_[k];
     if (sets_[candidate.set]->inliers()[candidate.index] != 0) continue;
     candidates_[k] = candidates_[n];
@@ -193,7 +186,6 @@ bool Ransac::consensus_fixes_motion(std::uint64_t seed) {
   std::uint32_t n = 0;
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     if (sets_[candidates_[k].set]->inliers()[candidates_[k].index] == 0) continue;
-    if (k >= samplable_) return true;  // a kind without minimal sets: its covariance decides
     const RansacCandidate inlier = candidates_[k];
     candidates_[k] = candidates_[n];
     candidates_[n++] = inlier;
@@ -295,7 +287,7 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
 int Ransac::iterations_needed() const {
   // 1 − (1 − w³)^k ≥ confidence, where w is the share of inliers among the matches that sets are drawn from.
   const double w =
-      gain_ == Gain::kMatch ? static_cast<double>(inliers_) / static_cast<double>(usable_) : kShareBeside;
+      gain_ == Gain::kMatch ? static_cast<double>(inliers_) / static_cast<double>(usable()) : kShareBeside;
   const double all_good = w * w * w;
   if (!(all_good > 1e-9)) return config_.max_ransac_iterations;
   if (all_good > 1 - 1e-9) return 1;

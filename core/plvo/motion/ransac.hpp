@@ -53,9 +53,8 @@ class Ransac {
          const MotionConfig& config, const MotionProblem::Kernels& kernels,
          std::span<RansacCandidate> scratch, MotionSolver& solver);
 
-  // Number of all usable matches, and of those that may form minimal sets.
-  std::size_t usable() const { return usable_; }
-  std::size_t samplable() const { return samplable_; }
+  // Number of all usable matches.
+  std::size_t usable() const { return candidates_.size(); }
 
   // Writes the motion of the most matches to T. Returns false if no hypothesis has a score above zero.
   bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
@@ -108,9 +107,7 @@ class Ransac {
   MotionConfig config_;
   MotionProblem::Kernels kernels_;
   MotionSolver& solver_;
-  std::span<RansacCandidate> candidates_;  // first those that may form minimal sets
-  std::size_t usable_ = 0;
-  std::size_t samplable_ = 0;
+  std::span<RansacCandidate> candidates_;
   int inliers_ = 0;
   double evidence_ = 0;  // of all candidates
   Gain gain_ = Gain::kMatch;

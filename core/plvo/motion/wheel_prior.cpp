@@ -71,7 +71,7 @@ Status BaseMotion::prior(const Se3& T_base_camera, MotionPrior& prior) const {
   Matrix6 C = inverse_covariance(T_before_now_, covariance_);
   C = compose_covariance(T_camera_base, exact, T_base_before, C);
   C = compose_covariance(T_camera_before, C, T_base_camera, exact);
-  C = 0.5 * (C + Matrix6(C.transpose()));
+  C = symmetric<6>(C);
   MotionPrior made;
   made.rotation = {T_now_before.R, C.block<3, 3>(3, 3)};
   made.translation = {T_now_before.t, C.block<3, 3>(0, 0)};

@@ -14,7 +14,7 @@
 #include "plvo/image/undistortion.hpp"
 #include "plvo/lines/line3d.hpp"
 #include "plvo/motion/motion_config.hpp"
-#include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/stage.hpp"
 #include "plvo/odometry/tracking/noise_scales.hpp"
 
 namespace plvo {

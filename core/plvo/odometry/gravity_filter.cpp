@@ -14,11 +14,6 @@ constexpr double kJolt = 13.816;  // 99.9 % quantile of χ²(2)
 // cancel that of a pose with a very uncertain rotation (kMostRotationVariance) beyond the digits of a double.
 constexpr double kLeastReadingVariance = 1e-12;
 
-template <int N>
-Matrix<N, N> symmetric(const Matrix<N, N>& M) {
-  return 0.5 * (M + Matrix<N, N>(M.transpose()));
-}
-
 Matrix3 turned(const Matrix3& J, const Matrix3& C) {
   return symmetric<3>(J.lazyProduct(C).eval().lazyProduct(J.transpose()));
 }

@@ -29,7 +29,7 @@
 #include "plvo/odometry/features/feature_budget.hpp"
 #include "plvo/odometry/features/feature_extraction.hpp"
 #include "plvo/odometry/gravity_filter.hpp"
-#include "plvo/odometry/image_repeats.hpp"
+#include "plvo/odometry/image_streams.hpp"
 #include "plvo/odometry/prediction.hpp"
 #include "plvo/odometry/propagated_prior.hpp"
 #include "plvo/odometry/recovery.hpp"

@@ -26,13 +26,13 @@ Reference reference_of(const Window& window, int slot, std::int64_t stamp_ns,
     reference.T_current_predicted = predicted.sensed.T_current_last() * T_last_reference;
   else if (last.velocity.predicts(elapsed))
     reference.T_current_predicted = motion_at(last.velocity.value, seconds) * T_last_reference;
-  PairPrior& prior = reference.prior;
-  prior.T_reference_last = from.pose.T_world_camera.inverse() * last.pose.T_world_camera;
-  prior.since_last_ns = elapsed;
-  prior.reference = from.velocity;
-  prior.reference_is_last = slot == window.last();
-  prior.last = last.velocity;
-  prior.depth_after_colour_s = predicted.depth_after_colour_s;
+  PairTiming& timing = reference.timing;
+  timing.T_reference_last = from.pose.T_world_camera.inverse() * last.pose.T_world_camera;
+  timing.since_last_ns = elapsed;
+  timing.reference = from.velocity;
+  timing.reference_is_last = slot == window.last();
+  timing.last = last.velocity;
+  timing.depth_after_colour_s = predicted.depth_after_colour_s;
   return reference;
 }
 
@@ -56,7 +56,7 @@ double depth_after_colour_s(const CameraModel& camera, std::int64_t depth_stamp_
   if (!window.has_last()) return predicted;
   predicted.last = window.from_keyframe(window.last());
   const Reference from_last = reference_of(window, window.last(), stamp_ns, predicted);
-  predicted.exposure = current_exposure(camera, from_last.prior, from_last.T_current_predicted);
+  predicted.exposure = current_exposure(camera, from_last.timing, from_last.T_current_predicted);
   const Window::References slots = window.references();
   for (std::size_t r = 0; r < slots.count; ++r)
     references[r] = reference_of(window, slots.slots[r], stamp_ns, predicted);
@@ -77,9 +77,9 @@ double depth_after_colour_s(const CameraModel& camera, std::int64_t depth_stamp_
   predicted.references = {&reference, 1};
   reference.features = &lost.features;
   if (predicted.sensed.known()) reference.T_current_predicted = predicted.sensed.T_current_last();
-  reference.prior.since_last_ns = elapsed;
-  reference.prior.depth_after_colour_s = predicted.depth_after_colour_s;
-  predicted.exposure = current_exposure(context.camera, reference.prior, reference.T_current_predicted);
+  reference.timing.since_last_ns = elapsed;
+  reference.timing.depth_after_colour_s = predicted.depth_after_colour_s;
+  predicted.exposure = current_exposure(context.camera, reference.timing, reference.T_current_predicted);
   return predicted;
 }
 

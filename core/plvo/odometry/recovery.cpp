@@ -30,10 +30,10 @@ bool recognise(const Window::Frame& keyframe, const CurrentFrame& frame, const V
   const StageContext& context = frame.context;
   Reference kept;
   kept.features = &keyframe.features;
-  kept.prior.recent = velocity;
-  kept.prior.reference = keyframe.velocity;
-  kept.prior.reference_is_last = false;
-  kept.prior.depth_after_colour_s = frame.predicted.depth_after_colour_s;
+  kept.timing.recent = velocity;
+  kept.timing.reference = keyframe.velocity;
+  kept.timing.reference_is_last = false;
+  kept.timing.depth_after_colour_s = frame.predicted.depth_after_colour_s;
   kept.chained = false;
   frame.describe_points();
   const double anywhere_px = std::max(context.camera.width, context.camera.height);

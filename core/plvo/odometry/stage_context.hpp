@@ -7,7 +7,7 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/odometry/config.hpp"
-#include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/stage.hpp"
 #include "plvo/points/carried_cells.hpp"
 
 namespace plvo {

@@ -13,17 +13,6 @@ const char* to_string(TrackState state) {
   return "unknown";
 }
 
-const char* to_string(Stage stage) {
-  switch (stage) {
-    case Stage::kImage: return "image";
-    case Stage::kPoints: return "points";
-    case Stage::kLines: return "lines";
-    case Stage::kMatching: return "matching";
-    case Stage::kMotion: return "motion";
-  }
-  return "unknown";
-}
-
 std::optional<ObservedRotation> observed_rotation(const TrackResult& result) {
   const bool starts = result.state == TrackState::kInitialising && result.status.ok();
   if ((result.state != TrackState::kTracking || result.repeated) && !starts) return std::nullopt;

@@ -4,7 +4,6 @@
 // covariance.hpp.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -12,6 +11,8 @@
 #include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/math/covariance.hpp"
 #include "plvo/math/se3.hpp"
+#include "plvo/odometry/features/feature_counts.hpp"
+#include "plvo/odometry/stage.hpp"
 
 namespace plvo {
 
@@ -24,21 +25,6 @@ enum class TrackState : std::uint8_t {
   kPredicted,  // no usable features, status gives the reason; the pose is new, from the priors alone
 };
 const char* to_string(TrackState state);
-
-enum class Stage : std::uint8_t { kImage, kPoints, kLines, kMatching, kMotion };
-inline constexpr int kStageCount = 5;
-using StageTimes = std::array<std::int64_t, kStageCount>;  // ns
-const char* to_string(Stage stage);
-
-// Feature counts of this frame. If no points were searched in it (ReferenceConfig::recent_frames), the first
-// three of the points are those of the latest frame in which they were.
-struct FeatureCounts {
-  int detected = 0;    // found, before the selection
-  int dropped = 0;     // found, but beyond the capacity
-  int with_depth = 0;  // lifted to 3D
-  int matched = 0;     // to the reference, putative
-  int inliers = 0;     // of the motion
-};
 
 struct TrackResult {
   TrackState state = TrackState::kInitialising;

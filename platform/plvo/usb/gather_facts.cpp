@@ -69,14 +69,14 @@ void try_access(UsbBus& bus, UsbDeviceFacts& facts) {
   if (devices != nullptr) libusb_free_device_list(devices, 1);
 }
 
-// "[Drivers] Repository=" of the ini file; empty if it is not set.
+// "Repository" in the section [Drivers] of the ini file; empty if it is not set.
 std::string repository_setting() {
   std::ifstream ini("/etc/openni2/OpenNI.ini");
+  std::string section;
   for (std::string line; std::getline(ini, line);) {
-    line.erase(
-        std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t' || c == '\r'; }),
-        line.end());
-    if (line.rfind("Repository=", 0) == 0) return line.substr(11);
+    std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    if (line.starts_with('[')) section = line;
+    if (section == "[Drivers]" && line.starts_with("Repository=")) return line.substr(11);
   }
   return {};
 }

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "plvo/base/status.hpp"
 #include "plvo/bench/jobs/job.hpp"
@@ -13,7 +14,7 @@ namespace plvo::bench {
 
 // What every command that measures understands.
 struct CommonOptions {
-  std::string systems = "all";
+  std::vector<std::string> systems = {"all"};
   std::filesystem::path out;
   int repeats = 1;
   int jobs = 1;
@@ -22,6 +23,10 @@ struct CommonOptions {
 };
 void add_common_options(CLI::App& command, CommonOptions& options);
 void add_measuring_options(CLI::App& command, JobOptions& options);
+// An option that takes words with commas between them. The help names the default, which is what `words`
+// holds.
+void add_list(CLI::App& command, const std::string& name, std::vector<std::string>& words,
+              const std::string& what);
 
 // Makes out/jobs. kIo when it cannot.
 Status make_out(const std::filesystem::path& out);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // plvo_bench: compares plvo with its peers. docs/developer/bench.md.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <exception>
 #include <map>
@@ -29,11 +29,8 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--out", options.out, "Results and tables; what is there already is not measured again")
       ->required()
       ->type_name("DIR");
-  command
-      .add_option(
-          "--systems", options.systems,
-          "all, ours, paper, peers, opencv, open3d, or names as the tables show them; separated by commas")
-      ->type_name("LIST");
+  add_list(command, "--systems", options.systems,
+           "all, ours, paper, peers, opencv, open3d, or names as the tables show them; separated by commas");
   command.add_option("--repeats", options.repeats, "Each job so often, interleaved (default 1)")
       ->check(CLI::PositiveNumber.description(""))
       ->type_name("NUMBER");
@@ -43,6 +40,14 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("--list-jobs", options.list_jobs,
                    "Only print the commands that are still to run, one a line; afterwards, the same command "
                    "without this makes the tables");
+}
+
+void add_list(CLI::App& command, const std::string& name, std::vector<std::string>& words,
+              const std::string& what) {
+  command.add_option(name, words, fmt::format("{} (default {})", what, fmt::join(words, ",")))
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("LIST");
 }
 
 Status make_out(const std::filesystem::path& out) {

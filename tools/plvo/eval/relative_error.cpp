@@ -2,12 +2,12 @@
 #include "plvo/eval/relative_error.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
 
 #include "plvo/eval/trajectory.hpp"
+#include "plvo/host/number_text.hpp"
 
 namespace plvo::eval {
 namespace {
@@ -84,9 +84,8 @@ bool parse_rpe_delta(std::string_view text, RpeDelta& delta) {
   result.unit = unit == 'f'   ? RpeDelta::Unit::kFrames
                 : unit == 's' ? RpeDelta::Unit::kSeconds
                               : RpeDelta::Unit::kMetres;
-  const char* end = text.data() + text.size() - 1;
-  const auto [stop, error] = std::from_chars(text.data(), end, result.amount);
-  if (error != std::errc() || stop != end || !(result.amount > 0) || result.amount > 1e6) return false;
+  text.remove_suffix(1);
+  if (!parse_whole_text(text, result.amount) || !(result.amount > 0) || result.amount > 1e6) return false;
   if (unit == 'f' && result.amount != std::floor(result.amount)) return false;
   delta = result;
   return true;

@@ -8,8 +8,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
+#include "plvo/host/number_text.hpp"
 #include "plvo/host/stream/tcp_listener.hpp"
 
 namespace plvo {
@@ -57,9 +57,7 @@ bool HostNames::is_valid(std::string_view name) {
   if (host.size() < name.size()) {
     const std::string_view digits = name.substr(host.size() + 1);
     int port = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
-    if (error != std::errc() || end != digits.data() + digits.size() || port < 1 || port > 65535)
-      return false;
+    if (!parse_whole_text(digits, port) || port < 1 || port > 65535) return false;
   }
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
     in6_addr address{};

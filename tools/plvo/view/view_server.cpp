@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/view/view_server.hpp"
 
+#include "plvo/host/number_text.hpp"
 #include "plvo/view/view_hub.hpp"
 
 #ifdef PLVO_HAVE_MICROHTTPD
 #include <microhttpd.h>
 #include <sys/socket.h>
 
-#include <charconv>
 #include <cstring>
 #include <optional>
 #include <string_view>
@@ -81,10 +81,9 @@ int socket_of(MHD_Connection* connection) {
 
 std::uint64_t number(MHD_Connection* connection, const char* name, std::uint64_t otherwise) {
   const char* found = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, name);
-  const std::string_view text = found != nullptr ? found : "";
   std::uint64_t value = otherwise;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && !text.empty() ? value : otherwise;
+  if (found != nullptr) parse_whole_text(found, value);
+  return value;
 }
 
 MHD_Result send(MHD_Connection* connection, unsigned code, const char* type, MHD_Response* response) {

@@ -9,7 +9,7 @@
 #include "plvo/lines/line_features.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/features/feature_budget.hpp"
-#include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/features/feature_counts.hpp"
 #include "plvo/points/keypoint.hpp"
 #include "plvo/surfaces/surface_features.hpp"
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the features that travel with the camera (carried_cells.hpp), in two ways.
 //
-// If the motion of the camera is known, features that should have moved in the image are searched at the
-// pixels where they were. Each reference votes.
-//
-// If most of the image travels with the camera, the estimate itself is misled: everything seems to be at
-// rest. Then the features that did not stay at their pixels agree on another motion, and they lie among those
-// that stayed. A surface has one motion, so one of the two kinds of features is light that falls on it or is
-// mirrored by it. The features that stay at their pixels are those that travel with the camera.
+// 1. The estimate is right. Features that its motion should have moved in the image are searched at the
+// pixels
+//    where they were. Each reference votes.
+// 2. Most of the features travel with the camera, and the estimate says that the camera stands still. The
+//    features that did not stay at their pixels tell: they agree on one motion, and they lie between those
+//    that stayed. Both groups seem to lie on the same surface, which has only one motion. So one group is no
+//    part of the surface but light, such as a projector's dots or a reflection. It is the group that stayed:
+//    light that comes from the robot travels with the camera.
 #pragma once
 
 #include <span>

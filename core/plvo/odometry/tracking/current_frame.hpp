@@ -19,7 +19,7 @@ namespace plvo {
 struct Reference {
   const FrameFeatures* features = nullptr;
   Se3 T_current_predicted;  // T_current_reference as predicted
-  PairPrior prior;
+  PairTiming timing;
   MotionReference pose;  // relative to the base, the first of the references
   // Whether its pose relative to the last good frame is known, from which the propagated prior starts.
   bool chained = true;

@@ -101,106 +101,141 @@ bool is_findable(const Reference& reference) {
   return points.described || points.keypoints.empty();
 }
 
+class MotionSearch {
+ public:
+  // All must outlive this object. tracked: what the last estimate found.
+  MotionSearch(const CurrentFrame& current, ReferenceTracking& tracking, TrackedMotion& tracked)
+      : current_(current),
+        tracking_(tracking),
+        tracked_(tracked),
+        references_(current.predicted.references),
+        latest_(references_[latest_of(references_)]) {}
+
+  // Tries the motion that aligns the images. Returns whether it is accepted.
+  bool from_image() {
+    Se3 aligned;
+    if (!is_registered() || !tracking_.align(latest_, current_, aligned)) return false;
+    const Se3 by_prediction = latest_.T_current_predicted * latest_.pose.T_reference_base;
+    Se3 start = aligned * latest_.pose.T_reference_base;
+    const bool are_apart =
+        distance_between(aligned, latest_.T_current_predicted, *latest_.features) > kSameStart;
+    Se3 rival = start;
+    const bool has_rival = are_apart && choose_start(by_prediction, start, rival);
+    const Explained found = explain(start);
+    if (has_rival && tracked_.ok() && is_other_motion(rival, tracked_.motion.T_current_reference))
+      tracked_.motion.contain(boxminus(rival, tracked_.motion.T_current_reference));
+    if (found.share < kAcceptedShareByImage) return false;
+    if (!are_apart && (tracked_.motion.explained < kWorldAtRest || tracked_.motion.contradicted)) {
+      explain(by_prediction, 1 / kComparableShare);
+      take_best();
+    }
+    return true;
+  }
+
+  // Tries motions that features give, first near the prediction, then over a wide area.
+  void from_features() {
+    current_.describe_points();
+    const Reference& nearest = is_findable(latest_) ? latest_ : references_[0];
+    bool accepted = find(nearest, nearest.T_current_predicted, PointMatchConfig().radius_px);
+    for (std::size_t r = references_.size(); r-- > 0 && !accepted;) {
+      const Reference& reference = references_[r];
+      if (!is_findable(reference)) continue;
+      accepted = find(reference, current_.predicted.sensed.known() ? reference.T_current_predicted : Se3{},
+                      kWideSearch_px);
+    }
+    if (!accepted) take_best();
+  }
+
+ private:
+  bool is_registered() const { return current_.context.config.points.registered; }
+
+  bool is_other_motion(const Se3& a, const Se3& b) const {
+    const Se3 T_base_latest = latest_.pose.T_reference_base.inverse();
+    return distance_between(a * T_base_latest, b * T_base_latest, *latest_.features) > kOtherMotion;
+  }
+
+  Explained explained_by_tracked() const {
+    Explained explained =
+        explained_by(tracked_.motion.T_current_reference, references_, tracking_, current_.context.camera);
+    if (tracked_.motion.contradicted) explained.evidence *= kWorthOfContradicted;
+    return explained;
+  }
+
+  bool refine(Se3 T_current_base) {
+    for (int i = 0; i < kMostRegistrations; ++i) {
+      tracking_.refine(references_, current_, T_current_base, tracked_);
+      if (!tracked_.ok() || !tracked_.motion.is_other) break;
+      T_current_base = tracked_.motion.T_current_reference;
+    }
+    return tracked_.ok();
+  }
+
+  // times: how much more than the best motion before it this one has to explain, to become the best.
+  Explained explain(const Se3& start, double times = 1) {
+    Explained explained;
+    if (refine(start)) explained = explained_by_tracked();
+    last_is_best_ = explained.evidence > times * best_.explained.evidence;
+    if (last_is_best_) best_ = {start, tracked_.motion.T_current_reference, explained};
+    return explained;
+  }
+
+  Explained glance(const Se3& start) {
+    tracking_.glance(references_, current_, start, tracked_);
+    return tracked_.ok() ? explained_by_tracked() : Explained{};
+  }
+
+  void take_best() {
+    if (!last_is_best_ && best_.explained.evidence > 0) (void)refine(best_.start);
+  }
+
+  // Glances at the aligned motion, which is `start`, and at the predicted one. Writes the one to start from
+  // to `start` and the other one to `rival`. Returns whether they are different motions that explain about
+  // the same.
+  bool choose_start(const Se3& by_prediction, Se3& start, Se3& rival) {
+    const Explained by_image = glance(start);
+    const bool image_leads = tracked_.ok();
+    if (image_leads) start = tracked_.motion.T_current_reference;
+    const Explained predicted = glance(by_prediction);
+    if (!tracked_.ok()) return false;
+    rival = tracked_.motion.T_current_reference;
+    const bool is_other = !image_leads || is_other_motion(start, rival);
+    const double least = is_other ? kComparableShare : 1 / kComparableShare;
+    if (predicted.evidence > least * by_image.evidence) std::swap(start, rival);
+    return is_other && are_comparable(predicted.evidence, by_image.evidence);
+  }
+
+  // Tries the motion that the descriptors of one reference give. Returns whether it is accepted.
+  bool find(const Reference& from, const Se3& T_predicted, double radius_px) {
+    last_is_best_ = false;
+    tracking_.find(from, current_, T_predicted, radius_px, tracked_);
+    if (!tracked_.ok()) return false;
+    if (!is_registered()) return true;
+    const Se3 start = tracked_.motion.T_current_reference * from.pose.T_reference_base;
+    // A motion is also accepted if two searches lead to it.
+    if (best_.explained.evidence > 0 && !is_other_motion(start, best_.motion)) return refine(best_.start);
+    return explain(start).share >= kAcceptedShareByFeatures;
+  }
+
+  const CurrentFrame& current_;
+  ReferenceTracking& tracking_;
+  TrackedMotion& tracked_;
+  std::span<const Reference> references_;
+  const Reference& latest_;
+  // The motion that explains most so far, the start that led to it, and what it explains.
+  struct {
+    Se3 start, motion;
+    Explained explained;
+  } best_;
+  bool last_is_best_ = false;  // the last estimate is that of best_
+};
+
 }  // namespace
 
 // Not inlined: its variables are on the stack only during the search.
 [[gnu::noinline]] void search_motion(const CurrentFrame& current, ReferenceTracking& tracking,
                                      TrackedMotion& tracked) {
-  const std::span<const Reference> references = current.predicted.references;
-  const StageContext& context = current.context;
-  const Config& config = context.config;
-  const Reference& latest = references[latest_of(references)];
-  const bool registered = config.points.registered;
-  const auto refine = [&](Se3 T_current_base) {
-    for (int i = 0; i < kMostRegistrations; ++i) {
-      tracking.refine(references, current, T_current_base, tracked);
-      if (!tracked.ok() || !tracked.motion.is_other) break;
-      T_current_base = tracked.motion.T_current_reference;
-    }
-    return tracked.ok();
-  };
-  const auto explained_by_tracked = [&] {
-    Explained explained =
-        explained_by(tracked.motion.T_current_reference, references, tracking, context.camera);
-    if (tracked.motion.contradicted) explained.evidence *= kWorthOfContradicted;
-    return explained;
-  };
-  // The start of the motion that explains most so far, the motion, and what it explains.
-  struct {
-    Se3 start, motion;
-    Explained explained;
-  } best;
-  bool last_is_best = false;  // nothing was tried since
-  // times: how much more than the best before it has to explain, to become the best.
-  const auto explain = [&](const Se3& start, double times = 1) {
-    Explained explained;
-    if (refine(start)) explained = explained_by_tracked();
-    last_is_best = explained.evidence > times * best.explained.evidence;
-    if (last_is_best) best = {start, tracked.motion.T_current_reference, explained};
-    return explained;
-  };
-  const auto glance = [&](const Se3& start) {
-    tracking.glance(references, current, start, tracked);
-    return tracked.ok() ? explained_by_tracked() : Explained{};
-  };
-  const auto take_best = [&] {
-    if (!last_is_best && best.explained.evidence > 0) (void)refine(best.start);
-  };
-  const auto is_other_motion = [&](const Se3& a, const Se3& b) {
-    const Se3 T_base_latest = latest.pose.T_reference_base.inverse();
-    return distance_between(a * T_base_latest, b * T_base_latest, *latest.features) > kOtherMotion;
-  };
-  const auto find = [&](const Reference& from, const Se3& T_predicted, double radius_px) {
-    last_is_best = false;
-    tracking.find(from, current, T_predicted, radius_px, tracked);
-    if (!tracked.ok()) return false;
-    if (!registered) return true;
-    const Se3 start = tracked.motion.T_current_reference * from.pose.T_reference_base;
-    // A motion is also accepted if two searches lead to it.
-    if (best.explained.evidence > 0 && !is_other_motion(start, best.motion)) return refine(best.start);
-    return explain(start).share >= kAcceptedShareByFeatures;
-  };
-
-  if (Se3 aligned; registered && tracking.align(latest, current, aligned)) {
-    const Se3 by_prediction = latest.T_current_predicted * latest.pose.T_reference_base;
-    Se3 start = aligned * latest.pose.T_reference_base;
-    const bool compare = distance_between(aligned, latest.T_current_predicted, *latest.features) > kSameStart;
-    Se3 rival = start;
-    bool has_rival = false;
-    if (compare) {
-      const Explained by_image = glance(start);
-      const bool image_leads = tracked.ok();
-      if (image_leads) start = tracked.motion.T_current_reference;
-      const Explained predicted = glance(by_prediction);
-      if (tracked.ok()) {
-        rival = tracked.motion.T_current_reference;
-        const bool is_other = !image_leads || is_other_motion(start, rival);
-        const double least = is_other ? kComparableShare : 1 / kComparableShare;
-        if (predicted.evidence > least * by_image.evidence) std::swap(start, rival);
-        has_rival = is_other && are_comparable(predicted.evidence, by_image.evidence);
-      }
-    }
-    const Explained found = explain(start);
-    if (has_rival && tracked.ok() && is_other_motion(rival, tracked.motion.T_current_reference))
-      tracked.motion.contain(boxminus(rival, tracked.motion.T_current_reference));
-    if (found.share >= kAcceptedShareByImage) {
-      if (!compare && (tracked.motion.explained < kWorldAtRest || tracked.motion.contradicted)) {
-        explain(by_prediction, 1 / kComparableShare);
-        take_best();
-      }
-      return;
-    }
-  }
-  current.describe_points();
-  const Reference& nearest = is_findable(latest) ? latest : references[0];
-  bool accepted = find(nearest, nearest.T_current_predicted, PointMatchConfig().radius_px);
-  for (std::size_t r = references.size(); r-- > 0 && !accepted;) {
-    const Reference& reference = references[r];
-    if (!is_findable(reference)) continue;
-    accepted = find(reference, current.predicted.sensed.known() ? reference.T_current_predicted : Se3{},
-                    kWideSearch_px);
-  }
-  if (!accepted) take_best();
+  MotionSearch search(current, tracking, tracked);
+  if (!search.from_image()) search.from_features();
 }
 
 }  // namespace plvo

@@ -26,9 +26,9 @@ NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& poin
 // The same ratio for surfaces; 1 without any.
 double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_reference, Arena& scratch);
 
-// Ratios for the variances of the nuisance parameters: the mean square of each kind's parameters plus their
+// Ratios for the variances of the nuisance parameters: the mean square of each group's parameters plus their
 // remaining variance, over the prior's variance (expectation maximisation of a variance component); 1 for a
-// kind that is not estimated.
+// group that is not estimated.
 void note_nuisance(const NuisanceParameters& shared, const NuisanceEstimate& estimate, NoiseScales& observed);
 
 // Moves `scales` one step towards what a frame showed; observed is a factor on the scales.

@@ -139,7 +139,7 @@ void ReferenceTracking::set_poses(std::span<const Reference> references, const M
   association.poses[kLastGoodPose] = {last.T_reference_base * T_base_first, last.covariance};
   for (std::size_t r = 0; r < references.size(); ++r) {
     if (r > 0) association.poses[r] = references[r].pose;
-    if (references[r].prior.reference_is_last) association.last_frame = r;
+    if (references[r].timing.reference_is_last) association.last_frame = r;
   }
 }
 
@@ -212,7 +212,7 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
       // The effect of a rolling shutter depends on the motion, so it is compensated anew for each better
       // motion.
       const RowTimeCompensation at =
-          compensate_row_times_of_points(camera, reference.prior, T, *reference.features, scratch);
+          compensate_row_times_of_points(camera, reference.timing, T, *reference.features, scratch);
       for (int i = 0; i < kStepsOfRound; ++i)
         if (!align_step(windows, at.reference_points, camera.pinhole, at.current_exposure, pyramid, T, step,
                         mask))
@@ -234,11 +234,12 @@ void ReferenceTracking::associate_by_descriptor(const Reference& reference, cons
   const StageContext& context = current.context;
   const CameraModel& camera = context.camera;
   set_poses({&reference, 1}, current.predicted.last, association);
-  current.extraction.lift_lines(
-      context, current.depth, current_exposure(camera, reference.prior, T_predicted), current.features.lines);
+  current.extraction.lift_lines(context, current.depth,
+                                current_exposure(camera, reference.timing, T_predicted),
+                                current.features.lines);
   RowTimeCompensation& features = association.features[0];
-  features = compensate_row_times(camera, reference.prior, T_predicted, *reference.features, current.features,
-                                  context.scratch);
+  features = compensate_row_times(camera, reference.timing, T_predicted, *reference.features,
+                                  current.features, context.scratch);
   const StageTimer timer(context, Stage::kMatching);
   const DepthSampler depth = current.depth.with(features.current_exposure);
   track_by_descriptor(view_of(current, depth, features.current_exposure), reference.features->points,
@@ -260,14 +261,14 @@ void ReferenceTracking::associate_by_motion(std::span<const Reference> reference
   set_poses(references, current.predicted.last, association);
   const MotionsToCurrent motions = motions_to_current(T_current_base, association.poses);
   const Exposure exposure =
-      current_exposure(camera, references[association.latest].prior, motions[association.latest]);
+      current_exposure(camera, references[association.latest].timing, motions[association.latest]);
   const DepthSampler depth = current.depth.with(exposure);
   if (is_whole || !current.features.lines.lifted)
     current.extraction.lift_lines(context, current.depth, exposure, current.features.lines);
   for (std::size_t r = 0; r < references.size(); ++r) {
     const Reference& reference = references[r];
     RowTimeCompensation& features = association.features[r];
-    features = compensate_row_times(camera, reference.prior, motions[r], *reference.features,
+    features = compensate_row_times(camera, reference.timing, motions[r], *reference.features,
                                     current.features, context.scratch);
     const StageTimer timer(context, Stage::kMatching);
     const std::size_t stride = is_whole ? 1 : reference.features->points.keypoints.size() / kGlancePoints + 1;
@@ -298,7 +299,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
           : NuisanceParameters{};
   estimate(association, current, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, tracked);
   if (tracked.ok())
-    tracked.exposure = current_exposure(context.camera, reference.prior, tracked.motion.T_current_reference);
+    tracked.exposure = current_exposure(context.camera, reference.timing, tracked.motion.T_current_reference);
 }
 
 // If the points that stayed at their pixels may mislead the estimate, searches for a motion of the other
@@ -365,7 +366,7 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   if (tracked.ok()) look_beside_stayed(references, current, association, start, tracked);
   if (tracked.ok())
     tracked.exposure =
-        current_exposure(context.camera, references[latest].prior, tracked.motion.motions[latest]);
+        current_exposure(context.camera, references[latest].timing, tracked.motion.motions[latest]);
 }
 
 }  // namespace plvo

@@ -5,23 +5,23 @@ namespace plvo {
 namespace {
 
 // Mean velocity since the last good frame, given this motion from the reference.
-Vector6 recent_velocity(const PairPrior& prior, const Se3& T_current_reference) {
-  if (prior.recent) return *prior.recent;
-  if (!(prior.since_last_ns > 0)) return Vector6::Zero();
-  return mean_velocity(T_current_reference * prior.T_reference_last,
-                       static_cast<double>(prior.since_last_ns) * 1e-9);
+Vector6 recent_velocity(const PairTiming& timing, const Se3& T_current_reference) {
+  if (timing.recent) return *timing.recent;
+  if (!(timing.since_last_ns > 0)) return Vector6::Zero();
+  return mean_velocity(T_current_reference * timing.T_reference_last,
+                       static_cast<double>(timing.since_last_ns) * 1e-9);
 }
 
 // The velocity at the reference: the mean of those over the intervals before and after it.
-Vector6 reference_velocity(const PairPrior& prior, const Vector6& recent) {
-  if (!prior.reference.known()) return recent;
-  if (!prior.reference_is_last) return prior.reference.value;
-  return 0.5 * (prior.reference.value + recent);
+Vector6 reference_velocity(const PairTiming& timing, const Vector6& recent) {
+  if (!timing.reference.known()) return recent;
+  if (!timing.reference_is_last) return timing.reference.value;
+  return 0.5 * (timing.reference.value + recent);
 }
 
-Exposure reference_exposure(const CameraModel& camera, const PairPrior& prior,
+Exposure reference_exposure(const CameraModel& camera, const PairTiming& timing,
                             const Se3& T_current_reference) {
-  return {camera, reference_velocity(prior, recent_velocity(prior, T_current_reference)), 0};
+  return {camera, reference_velocity(timing, recent_velocity(timing, T_current_reference)), 0};
 }
 
 std::span<const Line3d> carried(const Exposure& exposure, std::span<const Line3d> lines, Arena& scratch) {
@@ -47,21 +47,22 @@ std::span<const SurfaceSample> carried(const Exposure& exposure, std::span<const
 
 }  // namespace
 
-Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference) {
-  const Vector6 recent = recent_velocity(prior, T_current_reference);
-  return {camera, velocity_at_exposure(recent, prior.last), prior.depth_after_colour_s};
+Exposure current_exposure(const CameraModel& camera, const PairTiming& timing,
+                          const Se3& T_current_reference) {
+  const Vector6 recent = recent_velocity(timing, T_current_reference);
+  return {camera, velocity_at_exposure(recent, timing.last), timing.depth_after_colour_s};
 }
 
-RowTimeCompensation compensate_row_times_of_points(const CameraModel& camera, const PairPrior& prior,
+RowTimeCompensation compensate_row_times_of_points(const CameraModel& camera, const PairTiming& timing,
                                                    const Se3& T_current_reference,
                                                    const FrameFeatures& reference, Arena& scratch) {
   RowTimeCompensation result;
   const std::span<const Point3d> points = reference.points.points.first(reference.points.keypoints.size());
   result.reference_points = points;
-  result.current_exposure = current_exposure(camera, prior, T_current_reference);
+  result.current_exposure = current_exposure(camera, timing, T_current_reference);
   if (!(camera.readout_s > 0)) return result;
 
-  const Exposure exposure = reference_exposure(camera, prior, T_current_reference);
+  const Exposure exposure = reference_exposure(camera, timing, T_current_reference);
   const std::span<Point3d> copies = scratch.take<Point3d>("at mid-exposure", points.size());
   for (std::size_t i = 0; i < copies.size(); ++i)
     copies[i] = {exposure.at_mid_exposure(points[i].p), points[i].Sigma, points[i].record};
@@ -69,17 +70,17 @@ RowTimeCompensation compensate_row_times_of_points(const CameraModel& camera, co
   return result;
 }
 
-RowTimeCompensation compensate_row_times(const CameraModel& camera, const PairPrior& prior,
+RowTimeCompensation compensate_row_times(const CameraModel& camera, const PairTiming& timing,
                                          const Se3& T_current_reference, const FrameFeatures& reference,
                                          const FrameFeatures& current, Arena& scratch) {
   RowTimeCompensation result =
-      compensate_row_times_of_points(camera, prior, T_current_reference, reference, scratch);
+      compensate_row_times_of_points(camera, timing, T_current_reference, reference, scratch);
   result.reference_lines = reference.lines.lines_3d();
   result.current_lines = current.lines.lines_3d();
   result.reference_surfaces = reference.surfaces.samples.span();
   if (!(camera.readout_s > 0)) return result;
 
-  const Exposure exposure = reference_exposure(camera, prior, T_current_reference);
+  const Exposure exposure = reference_exposure(camera, timing, T_current_reference);
   result.reference_lines = carried(exposure, reference.lines.lines_3d(), scratch);
   result.current_lines = carried(result.current_exposure, current.lines.lines_3d(), scratch);
   result.reference_surfaces = carried(exposure, result.reference_surfaces, scratch);

@@ -19,7 +19,7 @@
 namespace plvo {
 
 // What is known of a pair before its features are matched.
-struct PairPrior {
+struct PairTiming {
   Se3 T_reference_last;            // of the last good frame, which may be the reference itself
   std::int64_t since_last_ns = 0;  // from the last good frame to the current one
   Velocity reference, last;        // of the reference, and of the last good frame
@@ -37,15 +37,16 @@ struct RowTimeCompensation {
 };
 
 // Motion of the camera during the exposure of the current frame, given this motion from the reference.
-Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference);
+Exposure current_exposure(const CameraModel& camera, const PairTiming& timing,
+                          const Se3& T_current_reference);
 
 // Compensates the reference's points only; otherwise as below.
-RowTimeCompensation compensate_row_times_of_points(const CameraModel& camera, const PairPrior& prior,
+RowTimeCompensation compensate_row_times_of_points(const CameraModel& camera, const PairTiming& timing,
                                                    const Se3& T_current_reference,
                                                    const FrameFeatures& reference, Arena& scratch);
 // Copies the changed features into the scratch. With a global shutter there are no changes, and the features
 // are used without a copy.
-RowTimeCompensation compensate_row_times(const CameraModel& camera, const PairPrior& prior,
+RowTimeCompensation compensate_row_times(const CameraModel& camera, const PairTiming& timing,
                                          const Se3& T_current_reference, const FrameFeatures& reference,
                                          const FrameFeatures& current, Arena& scratch);
 

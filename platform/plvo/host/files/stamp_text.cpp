@@ -4,8 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "plvo/host/number_text.hpp"
 
 namespace plvo {
 namespace {
@@ -23,8 +24,7 @@ constexpr double kLongestStep_s = 3;          // nothing can be tracked from one
 
 bool parse_double(std::string_view text, std::int64_t& stamp_ns) {
   double seconds = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(seconds)) return false;
+  if (!parse_whole_text(text, seconds) || !std::isfinite(seconds)) return false;
   if (std::abs(seconds) > static_cast<double>(kMaxSeconds)) return false;
   stamp_ns = std::llround(seconds * 1e9);
   return true;

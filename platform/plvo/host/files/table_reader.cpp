@@ -4,9 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "plvo/host/files/input_file.hpp"
+#include "plvo/host/number_text.hpp"
 
 namespace plvo {
 
@@ -61,9 +61,7 @@ Status parse_numbers(const fs::path& path, const TableRow& row, std::size_t firs
           path, row,
           fmt::format("has {} columns where {} are needed", row.words.size(), first + values.size()));
     const std::string& word = row.words[first + i];
-    const char* begin = word.data() + (word[0] == '+' ? 1 : 0);
-    const auto [end, error] = std::from_chars(begin, word.data() + word.size(), values[i]);
-    if (error != std::errc() || end != word.data() + word.size())
+    if (!parse_whole_text(std::string_view(word).substr(word[0] == '+' ? 1 : 0), values[i]))
       return row_error(path, row, fmt::format("'{}' is not a number", word));
   }
   return {};

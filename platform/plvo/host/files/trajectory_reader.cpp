@@ -5,11 +5,11 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "plvo/host/files/input_file.hpp"
 #include "plvo/host/files/stamp_text.hpp"
+#include "plvo/host/number_text.hpp"
 
 namespace plvo {
 namespace {
@@ -21,11 +21,6 @@ TrajectoryFormat detect(const TableRow& row) {
   // No clock in seconds shows 15 digits before the point; one in nanoseconds since 1970 shows 19.
   const std::size_t digits = row.words[0].find('.') == std::string::npos ? row.words[0].size() : 0;
   return row.commas && digits >= 15 ? TrajectoryFormat::kEuroc : TrajectoryFormat::kTum;
-}
-
-bool parse_nanoseconds(const std::string& word, std::int64_t& stamp_ns) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), stamp_ns);
-  return error == std::errc() && end == word.data() + word.size();
 }
 
 bool all_finite(const std::vector<double>& values) {
@@ -125,7 +120,7 @@ class Rows {
         stamp_ns =
             count_ < times_.size() ? times_[count_] : static_cast<std::int64_t>(count_) * kKittiPeriodNs;
         return true;
-      case TrajectoryFormat::kEuroc: return parse_nanoseconds(row.words[0], stamp_ns);
+      case TrajectoryFormat::kEuroc: return parse_whole_text(row.words[0], stamp_ns);
       default: return parse_stamp_ns(row.words[0], stamp_ns);
     }
   }

@@ -9,8 +9,9 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
+
+#include "plvo/host/number_text.hpp"
 
 namespace plvo {
 namespace {
@@ -29,11 +30,7 @@ bool split_address(const std::string& text, std::string& host, int& port) {
   const std::string address = without_brackets(given);
   if (address == given && address.find(':') != std::string::npos) return false;  // IPv6 needs its brackets
   int value = -1;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (address.empty() || error != std::errc() || end != digits.data() + digits.size() || value < 0 ||
-      value > 65535) {
-    return false;
-  }
+  if (address.empty() || !parse_whole_text(digits, value) || value < 0 || value > 65535) return false;
   host = address;
   port = value;
   return true;

@@ -4,10 +4,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "plvo/camera/camera_info.hpp"
+#include "plvo/host/number_text.hpp"
 
 namespace plvo::calibration_form {
 namespace {
@@ -75,8 +75,7 @@ bool is_key(std::string_view name) {
 
 bool parse_number(std::string_view text, double& value) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
+  return parse_whole_text(text, value);
 }
 
 Status damaged(const fs::path& path, std::string_view what) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -14,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "plvo/host/number_text.hpp"
 #include "plvo/replay/small_letters.hpp"
 
 #include "plvo/host/files/reader_limits.hpp"
@@ -58,8 +58,7 @@ std::optional<std::string> middle(const std::string& name, const Kind& kind) {
 }
 
 bool parse_frame_number(const std::string& text, std::uint32_t& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() && text.size() <= kMaxDigits;
+  return text.size() <= kMaxDigits && parse_whole_text(text, number);
 }
 
 // Prefix and suffix around the only number in the names of images, and whether some images are JPEG and some

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <memory>
-#include <sstream>
 
 #include "plvo/bench/commands.hpp"
 #include "plvo/bench/detectors/compare.hpp"
@@ -19,7 +18,7 @@ namespace {
 
 struct DetectorsArguments {
   std::filesystem::path out;
-  std::string scenes = "corridor,staircase,hall,desk,bare";
+  std::vector<std::string> scenes = {"corridor", "staircase", "hall", "desk", "bare"};
   std::vector<std::string> folders;
   JobOptions measuring;
   DetectorCapacity capacity;
@@ -63,8 +62,7 @@ Status compare_one(ViewSequence& sequence, const DetectorsArguments& arguments, 
 
 Status run_detectors(const DetectorsArguments& arguments) {
   std::vector<SceneName> scenes;
-  std::stringstream names(arguments.scenes);
-  for (std::string name; std::getline(names, name, ',');) {
+  for (const std::string& name : arguments.scenes) {
     scenes.emplace_back();
     if (Status status = parse_scene(name, scenes.back()); !status.ok()) return status;
   }
@@ -109,8 +107,7 @@ void add_detectors(CLI::App& app, int& exit_code) {
           "Recorded sequences in TUM's layout with true poses: no recall, no precision (default: none)")
       ->type_name("DIR[=MODEL]");
   command->add_option("--out", arguments->out, "For detectors.md")->required()->type_name("DIR");
-  command->add_option("--scenes", arguments->scenes, "Rendered ones; default " + arguments->scenes)
-      ->type_name("LIST");
+  add_list(*command, "--scenes", arguments->scenes, "Rendered scenes");
   command
       ->add_option("--segments", arguments->capacity.segments,
                    "At most so many of each: the longest (default 256)")

@@ -53,7 +53,7 @@ void add_growth(CLI::App& app, int& exit_code) {
   command->add_option("--out", options.out, "For growth.md and the sequences, which are rendered once")
       ->required()
       ->type_name("DIR");
-  command->add_option("--tables", options.tables, "Default: " + options.tables)->type_name("LIST");
+  add_list(*command, "--tables", options.tables, "Only these tables");
   command->add_option("--scene", arguments->scene, "Of the rendered sequences (default desk)")
       ->type_name("NAME");
   command->add_option("--frames", options.frames, "Of each case (default 20)")

@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <sstream>
-
 #include "plvo/bench/sequences/scaled_camera.hpp"
 
 namespace plvo::bench {
@@ -101,8 +99,7 @@ class Planner {
 
 Status plan_growth(const GrowthOptions& options, const std::vector<NamedFolder>& recorded, GrowthPlan& plan) {
   Planner planner(options, plan);
-  std::stringstream tables(options.tables);
-  for (std::string table; std::getline(tables, table, ',');) {
+  for (const std::string& table : options.tables) {
     if (table == "sizes") {
       planner.add_sizes();
     } else if (table == "points") {

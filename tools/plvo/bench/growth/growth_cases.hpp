@@ -46,7 +46,7 @@ struct GrowthPlan {
 
 struct GrowthOptions {
   std::filesystem::path out;
-  std::string tables = "sizes,points,segments,images,sequences";
+  std::vector<std::string> tables = {"sizes", "points", "segments", "images", "sequences"};
   SceneName scene = SceneName::kDesk;
   std::size_t frames = 20;
   std::size_t sequence_frames = 150;

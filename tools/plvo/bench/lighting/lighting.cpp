@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <sstream>
 
 #include "plvo/bench/commands.hpp"
 #include "plvo/bench/jobs/campaign.hpp"
@@ -24,8 +23,8 @@ namespace fs = std::filesystem;
 
 struct LightingOptions {
   CommonOptions common;
-  std::string sites = "corridor,staircase,hall,desk,bare";
-  std::string lights = "constant,varying";
+  std::vector<std::string> sites = {"corridor", "staircase", "hall", "desk", "bare"};
+  std::vector<std::string> lights = {"constant", "varying"};
   int seeds = 3;
   int first_seed = 1;
   int frames = 180;
@@ -47,12 +46,10 @@ fs::path folder_of(const LitSequence& sequence, const LightingOptions& options) 
 }
 
 Status list_sequences(const LightingOptions& options, std::vector<LitSequence>& sequences) {
-  std::stringstream sites(options.sites);
-  for (std::string site; std::getline(sites, site, ',');) {
+  for (const std::string& site : options.sites) {
     SceneName scene{};
     if (Status status = parse_scene(site, scene); !status.ok()) return status;
-    std::stringstream lights(options.lights);
-    for (std::string light; std::getline(lights, light, ',');) {
+    for (const std::string& light : options.lights) {
       LightName name{};
       if (Status status = parse_light(light, name); !status.ok()) return status;
       for (int i = 0; i < options.seeds; ++i) {
@@ -90,7 +87,7 @@ std::vector<std::string> command_of(const LitSequence& sequence, const LightingO
                                     "--first-seed", std::to_string(sequence.seed),
                                     "--seeds",      "1",
                                     "--frames",     std::to_string(sequence.frames),
-                                    "--systems",    options.common.systems,
+                                    "--systems",    fmt::format("{}", fmt::join(options.common.systems, ",")),
                                     "--sequences",  options.images_folder().string(),
                                     "--repeats",    std::to_string(options.common.repeats)};
   if (options.render_only) words.push_back("--render-only");
@@ -161,10 +158,10 @@ void add_command(CLI::App& app, int& exit_code, const char* name, const char* wh
                  Status (*execute)(const LightingOptions&)) {
   auto options = std::make_shared<LightingOptions>();
   CLI::App* command = app.add_subcommand(name, what);
-  options->common.systems = "ours,peers";
+  options->common.systems = {"ours", "peers"};
   add_common_options(*command, options->common);
-  command->add_option("--sites", options->sites, "Default: " + options->sites)->type_name("LIST");
-  command->add_option("--lights", options->lights, "Default: " + options->lights)->type_name("LIST");
+  add_list(*command, "--sites", options->sites, "Scenes of the simulator");
+  add_list(*command, "--lights", options->lights, "Lights of the simulator");
   command->add_option("--seeds", options->seeds, "Sequences of each site and light (default 3)")
       ->check(CLI::PositiveNumber.description(""))
       ->type_name("NUMBER");

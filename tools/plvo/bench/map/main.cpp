@@ -1,38 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// map_study patrol|recall|carried|soak|cost SCENE LIGHT SEED WIDTH AMOUNT: measures the map in a simulated
-// room and prints one JSON object. studies/map.py runs it and writes docs/results/map.md.
-#include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <string_view>
+// map_study STUDY SCENE LIGHT SEED WIDTH AMOUNT: measures the map in a simulated room and prints one JSON
+// object. studies/map.py runs it and writes docs/results/map.md.
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
 
 #include "plvo/bench/map/studies.hpp"
 
-namespace {
-
-struct Named {
-  std::string_view name;
-  void (*run)(const plvo::bench::MapStudy&);
-};
-constexpr std::array kStudies = {Named{"patrol", plvo::bench::patrol}, Named{"recall", plvo::bench::recall},
-                                 Named{"carried", plvo::bench::carried}, Named{"soak", plvo::bench::soak},
-                                 Named{"cost", plvo::bench::cost}};
-
-}  // namespace
-
-int main(int count, char** words) {
-  plvo::bench::MapStudy study;
-  if (count == 7 && plvo::parse_scene(words[2], study.scene).ok() &&
-      plvo::parse_light(words[3], study.light).ok()) {
-    study.seed = std::strtoull(words[4], nullptr, 10);
-    study.width = std::atoi(words[5]);
-    study.amount = std::atoi(words[6]);
-    for (const Named& named : kStudies) {
-      if (named.name != words[1] || study.width <= 0 || study.amount <= 0) continue;
-      named.run(study);
-      return 0;
-    }
+int main(int argc, char** argv) {
+  using plvo::bench::MapStudy;
+  const std::map<std::string, void (*)(const MapStudy&)> studies = {{"patrol", plvo::bench::patrol},
+                                                                    {"recall", plvo::bench::recall},
+                                                                    {"carried", plvo::bench::carried},
+                                                                    {"soak", plvo::bench::soak},
+                                                                    {"cost", plvo::bench::cost}};
+  CLI::App app("What a map does in a simulated room", "map_study");
+  MapStudy study;
+  std::string name, scene, light;
+  app.add_option("study", name, "What is measured")->required()->check(CLI::IsMember(studies));
+  app.add_option("scene", scene, "Scene of the simulator")->required();
+  app.add_option("light", light, "Light of the simulator")->required();
+  app.add_option("seed", study.seed, "Of the room, the trajectory and the noise")->required();
+  app.add_option("width", study.width, "Of the images; the height is 3/4 of it")
+      ->required()
+      ->check(CLI::Range(plvo::Limits::kLeastSide, plvo::Limits::kMostSide));
+  app.add_option("amount", study.amount, "Frames, views or trials")->required()->check(CLI::PositiveNumber);
+  CLI11_PARSE(app, argc, argv);
+  for (const plvo::Status& status :
+       {plvo::parse_scene(scene, study.scene), plvo::parse_light(light, study.light)}) {
+    if (status.ok()) continue;
+    std::fprintf(stderr, "map_study: %s\n", status.message());
+    return 2;
   }
-  std::fprintf(stderr, "usage: map_study patrol|recall|carried|soak|cost SCENE LIGHT SEED WIDTH AMOUNT\n");
-  return 2;
+  studies.at(name)(study);
+  return 0;
 }

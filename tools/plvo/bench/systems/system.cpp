@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include "plvo/odometry/odometry.hpp"
 
@@ -66,10 +65,9 @@ const std::vector<std::string>& system_names() {
   return names;
 }
 
-Status parse_systems(const std::string& text, std::vector<std::string>& names) {
+Status parse_systems(const std::vector<std::string>& words, std::vector<std::string>& names) {
   names.clear();
-  std::stringstream words(text);
-  for (std::string word; std::getline(words, word, ',');) {
+  for (const std::string& word : words) {
     bool known = is_group(word);  // a group is known even if none of its systems was built
     for (const std::string& name : system_names()) {
       if (name != word && !in_group(word, name)) continue;

@@ -30,10 +30,9 @@ class System {
 // if their libraries were present at build time, "opencv-rgbd", "opencv-icp", "opencv-rgbdicp" and
 // "open3d-hybrid".
 const std::vector<std::string>& system_names();
-// Parses names and the groups "all", "ours", "paper", "opencv", "open3d", "peers", separated by commas. Keeps
-// the given order and lists each system once. Returns kInvalidArgument with the known names for an unknown
-// name.
-Status parse_systems(const std::string& text, std::vector<std::string>& names);
+// `words` are names and the groups "all", "ours", "paper", "opencv", "open3d", "peers". Lists each system
+// once, in the order of the words. Returns kInvalidArgument with the known names for an unknown word.
+Status parse_systems(const std::vector<std::string>& words, std::vector<std::string>& names);
 
 Status make_system(const std::string& name, const CameraModel& camera, std::unique_ptr<System>& system);
 

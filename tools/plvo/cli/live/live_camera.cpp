@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/live/played_camera.hpp"
 #include "plvo/cli/options/bag_options.hpp"
+#include "plvo/host/number_text.hpp"
 #include "plvo/recording/foreign_format.hpp"
 #include "plvo/replay/checks/calibration_check.hpp"
 #include "plvo/replay/images/registered_camera.hpp"
@@ -21,8 +20,7 @@ namespace plvo::cli {
 namespace {
 
 bool parse_positive(std::string_view text, int& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && value > 0 && value <= 10000;
+  return parse_whole_text(text, value) && value > 0 && value <= 10000;
 }
 
 }  // namespace

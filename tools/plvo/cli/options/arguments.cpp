@@ -4,9 +4,9 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 
 #include "plvo/cli/common/exit_code.hpp"
+#include "plvo/host/number_text.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -18,12 +18,11 @@ std::string words_of(const NumberRange& range) {
                             : fmt::format("a number from {} to {}", range.min, range.max);
 }
 
-// std::from_chars with a plus sign allowed, and to the end of the text.
+// A plus sign is allowed.
 template <typename Number>
 bool parse(std::string_view text, Number& value) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
+  return parse_whole_text(text, value);
 }
 
 }  // namespace

@@ -3,11 +3,10 @@
 
 #include <fmt/core.h>
 
-#include <charconv>
-
 #include "plvo/cli/live/live_camera.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/bag_options.hpp"
+#include "plvo/host/number_text.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/calibration/sequence_calibration.hpp"
@@ -23,11 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr NumberRange kTolerance_s = positive(3600);
 constexpr std::uint64_t kMostScale = 16;
-
-bool parse_count(std::string_view text, std::size_t& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
-}
 
 SequenceOptions sequence_options(const CameraOptions& options) {
   SequenceOptions sequence;
@@ -147,8 +141,8 @@ bool parse_frame_range(const std::string& text, FrameRange& range) {
   const std::string_view end = colon == std::string::npos ? all : all.substr(colon + 1);
   FrameRange result;
   if (colon == std::string::npos && end.empty()) return false;
-  if (!first.empty() && !parse_count(first, result.first)) return false;
-  if (!end.empty() && !parse_count(end, result.end)) return false;
+  if (!first.empty() && !parse_whole_text(first, result.first)) return false;
+  if (!end.empty() && !parse_whole_text(end, result.end)) return false;
   if (result.first >= result.end) return false;
   range = result;
   return true;

@@ -3,31 +3,30 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <sstream>
+#include <CLI/CLI.hpp>
 
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/cli/options/arguments.hpp"
+#include "plvo/host/number_text.hpp"
 #include "plvo/odometry/config.hpp"
 
 namespace plvo::cli {
 namespace {
 
+// Two whole numbers with this sign between them.
+bool parse_pair(std::string_view text, char sign, int& first, int& second) {
+  const std::size_t place = text.find(sign);
+  return place != std::string_view::npos && parse_whole_text(text.substr(0, place), first) &&
+         parse_whole_text(text.substr(place + 1), second);
+}
+
 bool parse_size(std::string_view text, int& width, int& height) {
-  const char* end = text.data() + text.size();
-  const auto [x, first_error] = std::from_chars(text.data(), end, width);
-  if (first_error != std::errc() || x == end || *x != 'x') return false;
-  const auto [stop, second_error] = std::from_chars(x + 1, end, height);
-  return second_error == std::errc() && stop == end && width >= Limits::kLeastSide &&
+  return parse_pair(text, 'x', width, height) && width >= Limits::kLeastSide &&
          height >= Limits::kLeastSide && width <= Limits::kMostSide && height <= Limits::kMostSide;
 }
 
 bool parse_range(std::string_view text, int& first, int& end) {
-  const char* stop = text.data() + text.size();
-  const auto [colon, first_error] = std::from_chars(text.data(), stop, first);
-  if (first_error != std::errc() || colon == stop || *colon != ':') return false;
-  const auto [rest, end_error] = std::from_chars(colon + 1, stop, end);
-  return end_error == std::errc() && rest == stop && first >= 0 && first < end && end <= kMostSimulatedFrames;
+  return parse_pair(text, ':', first, end) && first >= 0 && first < end && end <= kMostSimulatedFrames;
 }
 
 // Names as the simulator writes them.
@@ -88,8 +87,7 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
             fmt::format("Adds one or several difficulties, separated by commas: {}",
                         fmt::join(difficulty_names(), ", ")),
             [&arguments](const std::string& text) -> std::string {
-              std::istringstream names(text);
-              for (std::string name; std::getline(names, name, ',');)
+              for (const std::string& name : CLI::detail::split(text, ','))
                 if (!add_difficulty(name, arguments.difficulties).ok())
                   return expected(fmt::format("names out of {}, separated by commas",
                                               fmt::join(difficulty_names(), ", ")),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/odometry/image_repeats.hpp"
+#include "plvo/odometry/image_streams.hpp"
 
 #include "plvo/odometry/elapsed.hpp"
 

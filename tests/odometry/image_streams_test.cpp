@@ -79,7 +79,7 @@ bool says(const TrackResult& result, const char* words) {
   return std::string(result.status.message()).find(words) != std::string::npos;
 }
 
-TEST(ImageRepeats, RepeatedFramesChangeNothingAndHaveAPredictedPose) {
+TEST(ImageStreams, RepeatedFramesChangeNothingAndHaveAPredictedPose) {
   RepeatingCamera twice, once;
   for (int i = 0; i < 16; ++i) {
     const TrackResult fresh = twice.see(i, stamp(i));
@@ -99,7 +99,7 @@ TEST(ImageRepeats, RepeatedFramesChangeNothingAndHaveAPredictedPose) {
   }
 }
 
-TEST(ImageRepeats, AStillCameraWithoutNoiseIsNotLost) {
+TEST(ImageStreams, AStillCameraWithoutNoiseIsNotLost) {
   RepeatingCamera camera;
   TrackResult result;
   for (int i = 0; i < 6; ++i) result = camera.see(i, stamp(i));
@@ -119,7 +119,7 @@ TEST(ImageRepeats, AStillCameraWithoutNoiseIsNotLost) {
   EXPECT_LT(result.pose_covariance(0, 0), 1e-3);
 }
 
-TEST(ImageRepeats, ARepeatedLostFrameStaysLost) {
+TEST(ImageStreams, ARepeatedLostFrameStaysLost) {
   RepeatingCamera camera;
   for (int i = 0; i < 4; ++i) (void)camera.see(i, stamp(i));
   for (int i = 4; i < 8; ++i) {
@@ -129,7 +129,7 @@ TEST(ImageRepeats, ARepeatedLostFrameStaysLost) {
   }
 }
 
-TEST(ImageRepeats, ADepthStreamThatStopsIsNamedAndTheFramesAreLost) {
+TEST(ImageStreams, ADepthStreamThatStopsIsNamedAndTheFramesAreLost) {
   RepeatingCamera camera;
   TrackResult result;
   for (int i = 0; i < 6; ++i) result = camera.see(i, stamp(i));
@@ -152,7 +152,7 @@ TEST(ImageRepeats, ADepthStreamThatStopsIsNamedAndTheFramesAreLost) {
 
 // A lost frame with old depth and the next one agree on a motion. The frames are lost all the same, and
 // nothing has moved: the pose is that of the last good frame, and tracking goes on from it.
-TEST(ImageRepeats, ADepthStreamThatStopsWhileLostChangesNothing) {
+TEST(ImageStreams, ADepthStreamThatStopsWhileLostChangesNothing) {
   constexpr int kElsewhere = 60;  // a view that shares nothing with those before
   RepeatingCamera camera;
   TrackResult before;
@@ -173,7 +173,7 @@ TEST(ImageRepeats, ADepthStreamThatStopsWhileLostChangesNothing) {
   EXPECT_LT(error_m(result, 7), 0.02);
 }
 
-TEST(ImageRepeats, DepthAtHalfTheRateOfColourIsNoFault) {
+TEST(ImageStreams, DepthAtHalfTheRateOfColourIsNoFault) {
   RepeatingCamera camera;
   TrackResult result;
   for (int i = 0; i < 24; ++i) {
@@ -185,7 +185,7 @@ TEST(ImageRepeats, DepthAtHalfTheRateOfColourIsNoFault) {
   EXPECT_LT(error_m(result, 23), 0.05);
 }
 
-TEST(ImageRepeats, DepthWithoutNoiseIsNoFaultWhileTheCameraStandsStill) {
+TEST(ImageStreams, DepthWithoutNoiseIsNoFaultWhileTheCameraStandsStill) {
   RepeatingCamera camera;
   for (int i = 0; i < 6; ++i) (void)camera.see(i, stamp(i));
   for (int i = 6; i < 40; ++i) {
