@@ -13,10 +13,20 @@ Vector6 mean_velocity(const Se3& T_now_before, double seconds) {
 
 Se3 motion_at(const Vector6& velocity, double seconds) { return boxplus(Se3{}, seconds * velocity); }
 
-Vector6 velocity_at_exposure(const Vector6& recent, const Velocity& before) {
-  if (!before.known()) return recent;
-  constexpr double kExtrapolated = 0.5;
-  return recent + 0.5 * kExtrapolated * (recent - before.value);
+Vector6 velocity_at_exposure(const Velocity& recent, const Velocity& before) {
+  if (!recent.known() || !before.known()) return recent.value;
+  const auto T = static_cast<double>(recent.measured_ns);
+  return recent.value +
+         T / (2 * (T + static_cast<double>(before.measured_ns))) * (recent.value - before.value);
+}
+
+Vector6 velocity_between(const Velocity& before, const Velocity& after) {
+  if (!before.known()) return after.value;
+  if (!after.known()) return before.value;
+  const auto T_before = static_cast<double>(before.measured_ns);
+  const auto T_after = static_cast<double>(after.measured_ns);
+  const double both = T_before + T_after;
+  return (T_after / both) * before.value + (T_before / both) * after.value;
 }
 
 double process_noise_variance(double per_second, double from_s, double to_s) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The motion model of the camera: constant velocity, and process noise where the motion is not observed. The
-// state of a frame is its pose and this velocity. It predicts the next motion, completes the priors, gives
-// each exposure its velocity, and says how fast a pose becomes uncertain.
+// The motion model of the camera: its velocity is a random walk, so the last one is the best guess for the
+// next; and process noise where the motion is not observed. The state of a frame is its pose and its
+// velocity. It predicts the next motion, completes the priors, gives each exposure its velocity, and says how
+// fast a pose becomes uncertain.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "plvo/math/se3.hpp"
@@ -17,18 +19,14 @@ struct Velocity {
   std::int64_t measured_ns = 0;  // 0: the velocity is not known
 
   bool known() const { return measured_ns > 0; }
-  // Whether the search for the next motion starts from this velocity, elapsed_ns after it was measured. Over
-  // more than a multiple of its own interval, a prediction is worse than no prediction.
-  bool predicts(std::int64_t elapsed_ns) const {
-    constexpr int kLongestPrediction = 3;
-    return static_cast<double>(elapsed_ns) < kLongestPrediction * static_cast<double>(measured_ns);
-  }
-  // Whether this velocity completes the priors of other sensors, elapsed_ns after it was measured: as long as
-  // it predicts, and for 300 ms at least. Later, the camera is taken to stand still. Such a motion is not
-  // corrected; the process noise covers its error.
-  bool continues(std::int64_t elapsed_ns) const {
-    constexpr std::int64_t kLeast_ns = 300'000'000;
-    return known() && (predicts(elapsed_ns) || elapsed_ns <= kLeast_ns);
+  // Seconds of motion at this velocity, elapsed_ns after it was measured. The camera is taken to keep it
+  // three times as long as it was measured, and for 300 ms at least. Then it is taken to stand still: the
+  // longer the gap, the less the old velocity says. The process noise covers the error.
+  double moving_s(std::int64_t elapsed_ns) const {
+    constexpr double kIntervals = 3, kLeast_s = 0.3;
+    if (!known()) return 0;
+    const double longest_s = std::max(kIntervals * 1e-9 * static_cast<double>(measured_ns), kLeast_s);
+    return std::min(1e-9 * static_cast<double>(elapsed_ns), longest_s);
   }
 };
 
@@ -37,12 +35,19 @@ Vector6 mean_velocity(const Se3& T_now_before, double seconds);
 // The motion at a constant velocity: T_now_before.
 Se3 motion_at(const Vector6& velocity, double seconds);
 
-// Velocity during the exposure of the current frame. recent: mean since the last good frame. before: that of
-// the last good frame, over the interval before it. Under a constant acceleration, the velocity at the end of
-// the interval is recent + (recent − before) / 2. Half of this correction is used: all of it would add too
-// much of its noise. The mean over a long interval serves as well: a camera that moves smoothly still has
-// this velocity, and of one that sways, the mean is small.
-Vector6 velocity_at_exposure(const Vector6& recent, const Velocity& before);
+// The motion of a camera with this velocity, elapsed_ns after it was measured: T_now_then.
+inline Se3 coasted_motion(const Velocity& velocity, std::int64_t elapsed_ns) {
+  return motion_at(velocity.value, velocity.moving_s(elapsed_ns));
+}
+
+// Velocity at the end of an interval, during the exposure of the current frame. recent: mean over the
+// interval since the last good frame. before: mean over the interval before that. For a random walk with
+// intervals of lengths T and T' the best linear estimate is recent + T / (2 (T + T')) (recent − before); if
+// they are equal, a quarter of the difference is added. (Under a constant acceleration it would be half.)
+Vector6 velocity_at_exposure(const Velocity& recent, const Velocity& before);
+// Velocity between two intervals: the best linear estimate weighs the mean over each with the length of the
+// other.
+Vector6 velocity_between(const Velocity& before, const Velocity& after);
 
 // Variance of an unobserved motion from from_s to to_s after the last observation, with this SD per second.
 // The error of an assumed rate hardly changes from one frame to the next, so its standard deviation grows

@@ -203,7 +203,9 @@ Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
   const Window::Frame& last = window_.last_frame();
   if (!propagated_prior_.known()) {
     const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, input.stamp_ns);
-    T_current_last = coasted_motion(window_, input.stamp_ns);
+    // An image that repeats for longer than one interval shows a camera at rest in a simulator without noise,
+    // or comes from a driver that has stopped.
+    T_current_last = coasted_motion(last.velocity, std::min(elapsed, last.velocity.measured_ns));
     covariance.setZero();
     add_process_noise(config_->references, static_cast<double>(elapsed) * 1e-9, covariance);
   }
@@ -227,8 +229,9 @@ PropagatedPrior Odometry::propagate(std::int64_t stamp_ns, const MotionPrior& pr
   PropagatedPrior sensed = propagated_prior_;
   if (!window_.has_last()) return sensed;
   const Window::Frame& last = window_.last_frame();
-  const bool continues = last.velocity.continues(elapsed_ns(last.features.stamp_ns, stamp_ns));
-  sensed.extend(prior, continues ? last.velocity.value : Vector6::Zero(),
+  const double moved_s = last.velocity.moving_s(elapsed_ns(last.features.stamp_ns, stamp_ns)) -
+                         last.velocity.moving_s(elapsed_ns(last.features.stamp_ns, *last_stamp_ns_));
+  sensed.extend(prior, moved_s * last.velocity.value,
                 static_cast<double>(elapsed_ns(*last_stamp_ns_, stamp_ns)) * 1e-9, config_->references);
   return sensed;
 }

@@ -16,7 +16,6 @@ Reference reference_of(const Window& window, int slot, std::int64_t stamp_ns,
   const Window::Frame& from = window[slot];
   const Window::Frame& last = window.last_frame();
   const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, stamp_ns);
-  const double seconds = static_cast<double>(elapsed) * 1e-9;
   const Se3 T_last_reference = last.pose.T_world_camera.inverse() * from.pose.T_world_camera;
   Reference reference;
   reference.features = &from.features;
@@ -24,8 +23,8 @@ Reference reference_of(const Window& window, int slot, std::int64_t stamp_ns,
   reference.T_current_predicted = T_last_reference;
   if (predicted.sensed.known())
     reference.T_current_predicted = predicted.sensed.T_current_last() * T_last_reference;
-  else if (last.velocity.predicts(elapsed))
-    reference.T_current_predicted = motion_at(last.velocity.value, seconds) * T_last_reference;
+  else
+    reference.T_current_predicted = coasted_motion(last.velocity, elapsed) * T_last_reference;
   PairTiming& timing = reference.timing;
   timing.T_reference_last = from.pose.T_world_camera.inverse() * last.pose.T_world_camera;
   timing.since_last_ns = elapsed;
@@ -83,23 +82,15 @@ double depth_after_colour_s(const CameraModel& camera, std::int64_t depth_stamp_
   return predicted;
 }
 
-Se3 coasted_motion(const Window& window, std::int64_t stamp_ns) {
-  const Window::Frame& last = window.last_frame();
-  if (!last.velocity.continues(0)) return {};
-  const std::int64_t coasted_ns =
-      std::min(last.velocity.measured_ns, elapsed_ns(last.features.stamp_ns, stamp_ns));
-  return motion_at(window.smooth_velocity(), static_cast<double>(coasted_ns) * 1e-9);
-}
-
 [[gnu::noinline]] PoseWithCovariance unobserved_pose(const Window& window, const ReferenceConfig& config,
                                                      std::int64_t stamp_ns) {
   const Window::Frame& last = window.last_frame();
   PoseWithCovariance pose = last.pose;
-  const Vector6 coasted =
-      boxminus(pose.T_world_camera * coasted_motion(window, stamp_ns).inverse(), pose.T_world_camera);
+  const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, stamp_ns);
+  const Se3 T_now_last = coasted_motion(last.velocity, elapsed);
+  const Vector6 coasted = boxminus(pose.T_world_camera * T_now_last.inverse(), pose.T_world_camera);
   pose.covariance += coasted.lazyProduct(coasted.transpose());
-  add_process_noise(config, static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns)) * 1e-9,
-                    pose.covariance);
+  add_process_noise(config, static_cast<double>(elapsed) * 1e-9, pose.covariance);
   return pose;
 }
 

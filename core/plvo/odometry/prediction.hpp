@@ -20,9 +20,6 @@ PredictedMotion predict(const Window& window, const CameraModel& camera, std::in
 // The motion since the lost frame, which is the frame before this one and the only reference.
 PredictedMotion predict_from_lost(const Window& window, const CurrentFrame& frame, Reference& reference);
 
-// The motion since the last good frame of a camera that kept its velocity for as long as the interval over
-// which that was measured, and then stood still.
-Se3 coasted_motion(const Window& window, std::int64_t stamp_ns);
 // The last good pose, with the uncertainty of the unobserved motion since then: the process noise, and as one
 // standard deviation the motion of a camera that kept its velocity. Tracking is mostly lost in fast motion.
 PoseWithCovariance unobserved_pose(const Window& window, const ReferenceConfig& config,

@@ -15,7 +15,7 @@ Matrix3 covariance_of_unobserved(double per_second, double before_s, double now_
 
 }  // namespace
 
-void PropagatedPrior::extend(const MotionPrior& prior, const Vector6& velocity, double seconds,
+void PropagatedPrior::extend(const MotionPrior& prior, const Vector6& coasted, double seconds,
                              const ReferenceConfig& config) {
   whole_ = whole_ && prior.tells_motion();
   if (!whole_) return;
@@ -28,7 +28,7 @@ void PropagatedPrior::extend(const MotionPrior& prior, const Vector6& velocity, 
     T_now_before.R = renormalise(prior.rotation->R_now_before);
     covariance.block<3, 3>(3, 3) = prior.rotation->covariance;
   } else {
-    T_now_before.R = rotation_exp(seconds * velocity.tail<3>());
+    T_now_before.R = rotation_exp(coasted.tail<3>());
     covariance.block<3, 3>(3, 3) =
         covariance_of_unobserved(config.process_noise_rad_per_s, before_s, seconds_);
   }
@@ -37,7 +37,7 @@ void PropagatedPrior::extend(const MotionPrior& prior, const Vector6& velocity, 
     covariance.block<3, 3>(0, 0) = prior.translation->covariance;
   } else {
     // The translation goes straight on, whatever the camera's rotation.
-    T_now_before.t = seconds * (T_now_before.R * (T_current_last_.R * velocity.head<3>()));
+    T_now_before.t = T_now_before.R * (T_current_last_.R * coasted.head<3>());
     covariance.block<3, 3>(0, 0) = covariance_of_unobserved(config.process_noise_m_per_s, before_s, seconds_);
   }
   covariance_ = compose_covariance(T_now_before, covariance, T_current_last_, covariance_);

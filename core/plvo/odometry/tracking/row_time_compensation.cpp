@@ -5,18 +5,17 @@ namespace plvo {
 namespace {
 
 // Mean velocity since the last good frame, given this motion from the reference.
-Vector6 recent_velocity(const PairTiming& timing, const Se3& T_current_reference) {
-  if (timing.recent) return *timing.recent;
-  if (!(timing.since_last_ns > 0)) return Vector6::Zero();
-  return mean_velocity(T_current_reference * timing.T_reference_last,
-                       static_cast<double>(timing.since_last_ns) * 1e-9);
+Velocity recent_velocity(const PairTiming& timing, const Se3& T_current_reference) {
+  if (timing.recent) return {*timing.recent, timing.since_last_ns};
+  if (!(timing.since_last_ns > 0)) return {};
+  return {mean_velocity(T_current_reference * timing.T_reference_last,
+                        static_cast<double>(timing.since_last_ns) * 1e-9),
+          timing.since_last_ns};
 }
 
-// The velocity at the reference: the mean of those over the intervals before and after it.
-Vector6 reference_velocity(const PairTiming& timing, const Vector6& recent) {
-  if (!timing.reference.known()) return recent;
-  if (!timing.reference_is_last) return timing.reference.value;
-  return 0.5 * (timing.reference.value + recent);
+Vector6 reference_velocity(const PairTiming& timing, const Velocity& recent) {
+  if (timing.reference.known() && !timing.reference_is_last) return timing.reference.value;
+  return velocity_between(timing.reference, recent);
 }
 
 Exposure reference_exposure(const CameraModel& camera, const PairTiming& timing,
@@ -49,7 +48,7 @@ std::span<const SurfaceSample> carried(const Exposure& exposure, std::span<const
 
 Exposure current_exposure(const CameraModel& camera, const PairTiming& timing,
                           const Se3& T_current_reference) {
-  const Vector6 recent = recent_velocity(timing, T_current_reference);
+  const Velocity recent = recent_velocity(timing, T_current_reference);
   return {camera, velocity_at_exposure(recent, timing.last), timing.depth_after_colour_s};
 }
 

@@ -116,11 +116,7 @@ void Window::set_velocity(std::int64_t elapsed_ns) {
   Frame& current = (*this)[current_];
   const Se3 T_current_last = current.pose.T_world_camera.inverse() * last.pose.T_world_camera;
   current.velocity = {mean_velocity(T_current_last, static_cast<double>(elapsed_ns) * 1e-9), elapsed_ns};
-  const Vector6 both_sides = last.velocity.known()
-                                 ? Vector6(0.5 * (last.velocity.value + current.velocity.value))
-                                 : current.velocity.value;
-  last.velocity = {both_sides, elapsed_ns};
-  smooth_velocity_ = both_sides;
+  last.velocity = {velocity_between(last.velocity, current.velocity), elapsed_ns};
 }
 
 void Window::advance(const Kept& kept, bool keep_older) {

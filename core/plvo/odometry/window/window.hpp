@@ -138,9 +138,6 @@ class Window {
   // Computes the velocity of the current frame from its pose and the last frame's, elapsed_ns apart; it also
   // refines the velocity of the last frame.
   void set_velocity(std::int64_t elapsed_ns);
-  // Mean velocity over the last two motions, in the axes of the frame between them. It has less noise than
-  // that over the last one.
-  const Vector6& smooth_velocity() const { return smooth_velocity_; }
   // Makes the current frame the last one and gives it the roles that are not kept. keep_older: a replaced
   // keyframe becomes the older one.
   void advance(const Kept& kept, bool keep_older);
@@ -175,7 +172,6 @@ class Window {
   int older_ = kNoFrame;
   int lost_ = kNoFrame;
   int recent_age_ = 0;
-  Vector6 smooth_velocity_ = Vector6::Zero();
   // Zero while the frame is the keyframe.
   RelativeCovariance last_motion_, recent_motion_;
   Matrix6 older_covariance_ = Matrix6::Zero();
