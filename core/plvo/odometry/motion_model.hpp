@@ -41,12 +41,11 @@ inline Se3 coasted_motion(const Velocity& velocity, std::int64_t elapsed_ns) {
 }
 
 // Velocity at the end of an interval, during the exposure of the current frame. recent: mean over the
-// interval since the last good frame. before: mean over the interval before that. For a random walk with
-// intervals of lengths T and T' the best linear estimate is recent + T / (2 (T + T')) (recent − before); if
-// they are equal, a quarter of the difference is added. (Under a constant acceleration it would be half.)
+// interval since the last good frame. before: mean over the interval before that. For a random walk and
+// intervals of equal length, the best linear estimate is recent + (recent − before) / 4. (Under a constant
+// acceleration it would be half of the difference.)
 Vector6 velocity_at_exposure(const Velocity& recent, const Velocity& before);
-// Velocity between two intervals: the best linear estimate weighs the mean over each with the length of the
-// other.
+// Velocity between two intervals: for a random walk, the best linear estimate is the mean of both.
 Vector6 velocity_between(const Velocity& before, const Velocity& after);
 
 // Variance of an unobserved motion from from_s to to_s after the last observation, with this SD per second.
