@@ -21,7 +21,7 @@ constexpr std::size_t kEndBytes = 4;
 // Ids below this leave room for more keyframes than a camera makes in years.
 constexpr std::uint32_t kMostId = 1U << 30;
 // Bounds on the numbers of a file. They are far beyond those of a map, and their squares are finite.
-constexpr double kMostCoordinate_m = 1e8, kMostVariance = 1e20;
+constexpr double kMostCoordinate_m = 1e8, kMostStoredVariance = 1e20;
 constexpr float kMostReach_m = 1e5F, kMostLineVariance_m2 = 1e6F;
 
 // The largest limits.
@@ -40,7 +40,7 @@ bool is_pose(const Se3& T) {
 }
 
 bool is_plausible(const Matrix6& covariance) {
-  return is_covariance(covariance) && covariance.diagonal().maxCoeff() <= kMostVariance;
+  return is_covariance(covariance) && covariance.diagonal().maxCoeff() <= kMostStoredVariance;
 }
 
 void write_info(const MapFileInfo& info, MapWriter& writer) {
