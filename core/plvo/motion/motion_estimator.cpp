@@ -7,10 +7,10 @@
 namespace plvo {
 namespace {
 
-// The consensus is solved twice, first with wider χ² thresholds. A match far more precise than the current
-// motion would otherwise fail the test because of the motion's error, and could never correct it. The first
-// factor applies to a motion that RANSAC found and refined, the second one to a motion that the caller
-// estimated.
+// The consensus is found in rounds with wider χ² thresholds, then with the final ones. A match far more
+// precise than the current motion would otherwise fail the test because of the motion's error, and could
+// never correct it. The second factor applies to the first round from a motion that the caller estimated, the
+// first one to all other rounds.
 constexpr double kWiderThanRefined = 4;
 constexpr double kWiderThanEstimated = 9;
 // If the wide round moves the motion by more SDs than this, it is repeated from the new motion. The matches
@@ -29,8 +29,8 @@ constexpr double kMinEigenvalueRatio = 1e-10;
 
 double largest_eigenvalue(const Matrix3& C) { return symmetric_eigen<3>(C).values.maxCoeff(); }
 
-// C = H⁻¹. Returns false if H does not determine all six degrees of freedom by the two rules stated in the
-// header.
+// C = H⁻¹. Returns false if the ratio of the eigenvalues is too small, or if a standard deviation exceeds its
+// bound in MotionConfig: H does not determine all six degrees of freedom then.
 bool invert_information(const Matrix6& H, const MotionConfig& config, Matrix6& C) {
   if (!H.allFinite() || !(H.diagonal().minCoeff() > 0)) return false;
   // Scales H to a unit diagonal, so that metres and radians are comparable and the eigenvalues are
@@ -161,7 +161,8 @@ class ConsensusSolver {
     return approach(scale);
   }
 
-  // From the prediction, if that was estimated, else or if its consensus is too small by RANSAC.
+  // Starts from the prediction, if that was estimated. Otherwise, and if its consensus is too small, RANSAC
+  // finds the start.
   StatusCode find_first() {
     if (start_.estimated) {
       first_ = *start_.prediction;
@@ -225,8 +226,8 @@ class ConsensusSolver {
   double least_inliers_;
   NuisanceParameters shared_;
   Se3 T_;
-  Se3 first_;               // where the search for the first motion began
-  double first_scale_ = 0;  // of its first thresholds
+  Se3 first_;  // start of the first motion, and the scale of its first thresholds
+  double first_scale_ = 0;
 };
 
 }  // namespace

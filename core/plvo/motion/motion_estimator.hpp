@@ -33,7 +33,8 @@ struct MotionEstimate {
   // Whether this is not the first motion with a consensus, but another one that has more evidence or, where a
   // prior contradicts the first, is not contradicted.
   bool is_other = false;
-  // Whether a prior contradicts the motion: the other sensors measured a different one.
+  // Whether a prior contradicts the first motion, and no other motion was taken in its place: the other
+  // sensors measured a different one.
   bool contradicted = false;
   MotionsToCurrent motions;  // T_current_reference for every reference; their poses are estimated jointly
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
@@ -74,9 +75,10 @@ struct MotionStart {
 // that the sets match with; the result is the motion from the base, reference 0. start.prediction, if any, is
 // the first hypothesis, and it decides between rotations that perpendicular lines cannot distinguish. The
 // result is bitwise reproducible. Scratch memory (take_ransac_scratch, take_solver) is taken from the arena
-// and returned; if the arena is too small, the status is kOutOfMemory. The status is also kDegenerate if the
-// information matrix (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or if every minimal set
-// drawn from the consensus is degenerate: all lines parallel, all points on a line, …
+// and returned; if the arena is too small, the status is kOutOfMemory. The status is also kDegenerate if a
+// standard deviation exceeds its bound in MotionConfig, if the information matrix (scaled to a unit diagonal)
+// has an eigenvalue ratio below 1e-10, or if every minimal set drawn from the consensus is degenerate: all
+// lines parallel, all points on a line, …
 void estimate_motion(std::span<ConstraintSet* const> sets, std::span<CostTerm* const> others,
                      const MotionReferences& references, const MotionConfig& config, const LmOptions& lm,
                      std::uint64_t seed, const MotionStart& start, Arena& arena, MotionEstimate& estimate);

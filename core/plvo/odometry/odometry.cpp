@@ -86,8 +86,8 @@ Odometry::Odometry() = default;
     colour_.look(input, config_->mask);
     depth_.look(input, config_->mask);
   }
-  // After a lost frame, the motion is searched even if the image is repeated: there is no pose from which to
-  // predict.
+  // After a lost frame, the motion is searched even if the image is repeated: a prediction would hide the
+  // loss.
   const bool is_passed_over = window_.has_last() && !lost_since_ns_ && colour_.is_repeated();
   TrackResult result = !refusal.ok()    ? refuse(input, refusal)
                        : is_passed_over ? pass_over(input, prior)
@@ -117,7 +117,7 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu, const Mo
   return result;
 }
 
-// A frame that passed check() and is not repeated, step by step.
+// A frame that passed check() and is not passed over, step by step.
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
@@ -194,7 +194,7 @@ Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
 }
 
 // A repeated colour image shows no motion: the pose at the stamp is predicted, by the priors or by the last
-// velocity. Nothing that the next frame needs is changed.
+// velocity. Only the propagated prior and the last stamp change.
 [[gnu::noinline]] TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior) {
   propagated_prior_ = propagate(input.stamp_ns, prior);
   last_stamp_ns_ = input.stamp_ns;

@@ -41,7 +41,7 @@
 
 namespace plvo {
 
-// What init allocates, in order; an arena without memory counts the bytes.
+// What init allocates after the window's frames, in order; an arena without memory counts the bytes.
 struct OdometryMemory {
   FeatureViews views;
   FeatureExtraction extraction;
@@ -85,21 +85,22 @@ class Odometry {
               const Limits& limits = Limits::vga());
 
   // Never fails: the state and the status of the result report all errors. A frame of the wrong size, with
-  // null views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
+  // null views, or not later than the one before is refused (kLost, kInvalidArgument). It does not change the
+  // state of the tracking; features() then shows no segments and no tracks.
   // After a loss so long that the position may be anywhere (covariance.hpp), the first usable frame starts a
   // new world, like the very first frame: kInitialising, and TrackResult::world has risen. The pose of
   // set_pose() is forgotten with the old world.
   TrackResult track(const RgbdFrame& input);
   // Tracks with measurements of other sensors. Their motion guides the search for features and joins the
   // estimate as one more constraint. Directions that vision leaves open then have a large covariance but
-  // cause no loss, and a frame without usable features is kPredicted. Gravity corrects roll and pitch of the
-  // pose. An empty prior changes nothing; one that does not pass MotionPrior::validate() is refused with the
-  // frame.
+  // cause no loss. A frame without usable features is kPredicted if every frame since the last good one came
+  // with a rotation or a translation. Gravity corrects roll and pitch of the pose. An empty prior is as none;
+  // one that does not pass MotionPrior::validate() is refused with the frame.
   TrackResult track(const RgbdFrame& input, const MotionPrior& prior);
   // Tracks with the samples of a gyro and an accelerometer that wait in `imu`, and corrects the gyro's offset
   // by the estimated rotation. Every frame must be tracked by this function: `imu` must give the samples of
   // all intervals. A refused frame uses up no samples. wheels: the motion by wheels; its rotation is used
-  // where the gyro measures none.
+  // where the gyro measures none, and its gravity never.
   TrackResult track(const RgbdFrame& input, ImuIntegrator& imu, const MotionPrior& wheels = MotionPrior());
 
   // Restores the state after init: the next usable frame defines a world of the next number, and the learnt
@@ -116,18 +117,19 @@ class Odometry {
   // features of the next frames depends on nothing else.
   void frame_took(std::int64_t ns) { budget_.note(ns); }
 
-  // Allocations in the block by owner (size-optimised code does not record them), and the high-water mark of
-  // the scratch behind it.
+  // What init allocated, by owner; size-optimised code does not record it.
   std::span<const Arena::Record> memory_records() const;
+  // Bytes that init allocated.
   std::size_t memory_used() const;
+  // Most bytes that were in use at any time, with the scratch of the stages.
   std::size_t memory_peak() const;
 
+  // Both are valid until the next call of track().
   FeatureView features() const;
-  // Valid until the next call of track().
   KeyframeView keyframe() const;
 
  private:
-  // The steps of a frame, in their order. Before update() none changes the window or the world.
+  // The steps of a frame, in their order. Before update() none changes a pose, a reference or the world.
   Status check(const RgbdFrame& input, const MotionPrior& prior) const;
   TrackResult process(const RgbdFrame& input, const MotionPrior& prior);
   PropagatedPrior propagate(std::int64_t stamp_ns, const MotionPrior& prior) const;

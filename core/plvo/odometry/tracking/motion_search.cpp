@@ -27,9 +27,11 @@ constexpr double kSameStart = 4.0 / 525;
 // mostly keeps its velocity. If they are the same motion, the aligned one is taken, because it is nearer to
 // it than a prediction that is 4 px off; but not if it explains clearly less.
 constexpr double kOtherMotion = 2.0 / 525;
-// A motion that a prior contradicts counts as explaining this share of what it explains.
+// Where motions are compared, the evidence of one that a prior contradicts counts this much. It may be
+// accepted nevertheless: the prior may be the one that is wrong.
 constexpr double kWorthOfContradicted = 0.25;
-// When tracking fails, features are searched this far from their old positions, whatever the prediction.
+// When tracking fails, features are searched this far from where the propagated prior puts them or, without
+// one, from their old positions. The velocity is not used.
 constexpr double kWideSearch_px = 120;
 
 // Evidence (coverage.hpp) of the inliers, and its share of that of all features in view.
@@ -125,6 +127,8 @@ class MotionSearch {
     if (has_rival && tracked_.ok() && is_other_motion(rival, tracked_.motion.T_current_reference))
       tracked_.motion.contain(boxminus(rival, tracked_.motion.T_current_reference));
     if (found.share < kAcceptedShareByImage) return false;
+    // An object may cover most of the image. The prediction, although it is near, may lead to the other
+    // motion.
     if (!are_apart && (tracked_.motion.explained < kWorldAtRest || tracked_.motion.contradicted)) {
       explain(by_prediction, 1 / kComparableShare);
       take_best();
