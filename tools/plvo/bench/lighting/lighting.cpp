@@ -3,7 +3,7 @@
 // rendered twice from every seed: under constant light and under a lamp that swings and dims. A sequence ends
 // where it began, so that the end-point drift (TED) needs no other ground truth. The unit of work is one
 // sequence: render its images if they do not exist yet, then measure every system.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
