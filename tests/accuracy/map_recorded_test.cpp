@@ -127,7 +127,10 @@ TEST(MapRecorded, RecognisesThePlacesOfRealImagesAndNoOthers) {
     std::printf("%s: %zu loops, %d wrong, ATE of the odometry %.1f mm, in the map %.1f mm\n", recorded.folder,
                 twice.loops(), twice.wrong(), 1e3 * twice.odometry_error(), 1e3 * twice.map_error());
     EXPECT_EQ(twice.wrong(), 0) << recorded.folder;
-    // A recording without points has no loop: lines alone recognise no place.
+    // Lines alone recognise no place, and this recording has hardly any points.
+    if (sequence.name != "fr3_notexture_120") {
+      EXPECT_GT(twice.loops(), 0U) << recorded.folder;
+    }
     EXPECT_LE(twice.map_error(), 1.02 * twice.odometry_error()) << recorded.folder;
   }
 }

@@ -2,6 +2,7 @@
 // The public API itself: which input is refused, and the order in which a frame passes through the modules.
 #include "plvo/odometry/odometry.hpp"
 
+#include <algorithm>
 #include <array>
 #include <new>
 
