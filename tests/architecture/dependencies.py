@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads every #include and reports each forbidden dependency between modules.
 
-tools -> platform -> hal -> core; inside the core odometry -> inertial -> motion, and odometry -> points | lines | surfaces |
-motion -> image -> camera -> math -> base. A dependency may skip layers downwards. Points, lines, surfaces and motion do not depend on each other. There is no cycle.
+tools -> platform -> hal -> core; inside the core map -> odometry -> inertial -> motion, and odometry -> points | lines | surfaces |
+motion -> image -> camera -> math -> base. The map depends on the odometry because Map::update takes a TrackResult and copies the
+odometry's keyframe. A dependency may skip layers downwards. Points, lines, surfaces and motion do not depend on each other. There is
+no cycle.
 An include is a path on disk: "plvo/<module>/<file>.hpp" is the file <layer>/plvo/<module>/<file>.hpp of exactly one layer.
 """
 import pathlib

@@ -14,6 +14,7 @@ LAYERS = ("core", "hal", "platform", "tools")
 LITERAL = re.compile(r'"(?:\\.|[^"\\\n])*"(?:\s*"(?:\\.|[^"\\\n])*")*')
 PIECE = re.compile(r'"((?:\\.|[^"\\\n])*)"')
 OF_A_STATUS = re.compile(r"StatusCode::k\w+,\s*(?:fmt::format\()?\s*$")  # before a literal
+APPENDED = re.compile(r"\.append\(\s*$")  # before a literal, which begins a message if it begins with a letter
 NAMED = re.compile(r"share/doc/plvo/([\w/]+\.md)(?:#([\w-]+))?")
 
 
@@ -22,7 +23,8 @@ def literals(text):
     text = re.sub(r"//[^\n]*|^\s*#\s*include.*$", "", text, flags=re.M)
     for match in LITERAL.finditer(text):
         joined = "".join(PIECE.findall(match.group(0)))
-        of_a_status = OF_A_STATUS.search(text, max(0, match.start() - 80), match.start()) is not None
+        before = text[max(0, match.start() - 80):match.start()]
+        of_a_status = bool(OF_A_STATUS.search(before) or APPENDED.search(before) and len(joined.split()) > 2 and joined[0].isalpha())
         yield text.count("\n", 0, match.start()) + 1, joined.replace('\\"', '"').replace("\\n", "\n"), of_a_status
 
 

@@ -371,6 +371,8 @@ class Messages(unittest.TestCase):
         errors = self.found(source=self.SOURCE + 'return {StatusCode::kIo,\n        "the disk is full"};\n')
         self.assertEqual(len(errors), 1)
         self.assertIn('"the disk is full": give the message a row', errors[0])
+        self.assertEqual(len(self.found(source=self.SOURCE + 'status.append("the disk is full");\n')), 1)
+        self.assertEqual(self.found(source=self.SOURCE + 'status.append(", while the disk is full");\n'), [])
 
     def test_a_page_that_is_not_there_is_named(self):
         for new in ("user/b.md#limits", "user/a.md#other"):

@@ -140,7 +140,7 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view)) {
        .readout_s = kKinectReadout_s,
        .depth_timing = {true, -0.01, 0.03}},
       {.name = "window", .config = window, .limits = three, .frames = 12},
-      {.name = "vga", .config = {}, .limits = Limits::vga(), .frames = 20, .dark_from = 8},
+      {.name = "vga", .config = {}, .limits = Limits::vga(), .frames = 10, .dark_from = 8},
   };
   for (const GoldenCase& golden : cases)
     if (!run(golden, memory, sequence, print)) return false;

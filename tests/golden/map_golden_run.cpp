@@ -96,7 +96,6 @@ bool map_golden_run(const MapGoldenMemory& memory, void (*print)(std::string_vie
   }
   run.track("out", 0, kTurn);
   run.track("back", kTurn, 0);
-  run.track("again", 0, kTurn);
   run.cover("covered");
   run.track("carried", 30, kTurn);
   if (run.save_and_load()) return true;

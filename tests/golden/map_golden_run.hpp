@@ -14,7 +14,7 @@
 namespace plvo {
 
 inline constexpr Limits kMapGoldenLimits = {160, 120, 250, 64, 2, 1, 0};
-inline constexpr MapLimits kMapGoldenMapLimits = {12, 200, 64};
+inline constexpr MapLimits kMapGoldenMapLimits = {10, 200, 64};
 
 // What map_golden_run needs: the blocks of the odometry, of the map and of the renderer, and room for the
 // saved map.

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs plvo's packages on Debian 12 and runs all tests, in these steps:
 # - installs the missing packages;
-# - checks that Clang, the sanitizers and emulated ARM boards give the same results as GCC bit for bit, and measures the code and the
-#   stack on the boards;
-# - runs each fuzzer briefly, the tests of the readers and of the core's modules that read images under the address and undefined
-#   behaviour sanitizers, and the tests with threads under the thread sanitizer;
+# - checks that emulated ARM boards give the same results as this machine bit for bit, and measures the code and the stack on the
+#   boards;
+# - builds with Clang, the address sanitizer and the undefined behaviour sanitizer: runs each fuzzer briefly, the tests of the readers
+#   and of the core's modules that read images; checks that the results are the same bit for bit;
+# - runs the tests with threads under the thread sanitizer;
 # - builds the release preset and runs its suite, which contains every test.
 # `test.sh PRESET…` instead runs the suites of these presets in this order; `test.sh all` runs those of all presets. The script stops
 # at the first failure.
@@ -49,11 +50,9 @@ briefly() {
     suite "$preset" "$tests" --tests-regex "^(${tests// /|})$" >"build/$preset/golden.log" 2>&1 &
     emulated+=("$!:$preset")
   done
-  build clang --target golden_test fuzzers
-  suite clang "golden_test $(fuzzers)" --tests-regex '^(golden_test|fuzz_.*)$'
-  build asan --target core_and_reader_tests
-  suite asan "golden_test detector_test lsd_test odometry_states_test recorded_camera_test bag_file_test consistency_test" \
-    --label-regex '^(core|golden|reader)$' --label-exclude '^calculation$'
+  build asan --target core_and_reader_tests fuzzers
+  suite asan "golden_test map_golden_test detector_test lsd_test odometry_states_test recorded_camera_test bag_file_test $(fuzzers)" \
+    --label-regex '^(core|golden|reader|fuzz)$' --label-exclude '^unsanitized$'
   build tsan --target threaded_tests
   suite tsan "frame_ring_test pose_stream_test thread_pair_test live_view_test simulated_camera_test.threads" \
     --label-regex '^threads$'
