@@ -4,8 +4,8 @@
 # - installs the missing packages;
 # - checks that emulated ARM boards give the same results as this machine bit for bit, and measures the code and the stack on the
 #   boards;
-# - builds with Clang, the address sanitizer and the undefined behaviour sanitizer: runs each fuzzer briefly, the tests of the readers
-#   and of the core's modules that read images; checks that the results are the same bit for bit;
+# - builds with Clang, the address sanitizer and the undefined behaviour sanitizer: runs each fuzzer briefly and the tests of the core's
+#   modules that read images; checks that the results are the same bit for bit;
 # - runs the tests with threads under the thread sanitizer;
 # - builds the release preset and runs its suite, which contains every test.
 # `test.sh PRESET…` instead runs the suites of these presets in this order; `test.sh all` runs those of all presets. The script stops
@@ -43,16 +43,16 @@ fuzzers() { basename --multiple --suffix=.cpp tests/fuzz/fuzz_*.cpp; }
 briefly() {
   # The run of an emulated board takes minutes in a single thread: it continues during the next builds.
   local preset programs tests emulated=()
-  for preset in cortex-m7 aarch64 armhf; do
+  for preset in cortex-m7 aarch64; do
     programs=(golden_test map_golden_test) tests="golden_test map_golden_test budget_text"
     if [ "$preset" = cortex-m7 ]; then programs+=(footprint stack_program) tests+=" budget_stack"; fi
     build "$preset" --target "${programs[@]}"
     suite "$preset" "$tests" --tests-regex "^(${tests// /|})$" >"build/$preset/golden.log" 2>&1 &
     emulated+=("$!:$preset")
   done
-  build asan --target core_and_reader_tests fuzzers
-  suite asan "golden_test map_golden_test detector_test lsd_test odometry_states_test recorded_camera_test bag_file_test $(fuzzers)" \
-    --label-regex '^(core|golden|reader|fuzz)$' --label-exclude '^unsanitized$'
+  build asan --target core_tests fuzzers
+  suite asan "golden_test map_golden_test detector_test lsd_test odometry_states_test pose_graph_test $(fuzzers)" \
+    --label-regex '^(core|golden|fuzz)$' --label-exclude '^unsanitized$'
   build tsan --target threaded_tests
   suite tsan "frame_ring_test pose_stream_test thread_pair_test live_view_test simulated_camera_test.threads" \
     --label-regex '^threads$'
