@@ -51,6 +51,7 @@ class MappedCamera {
     if (view != kDark && in_map.keyframe != 0 && result.state == TrackState::kTracking)
       frames_.push_back({view, in_map.keyframe, in_map.T_keyframe_camera, result.T_world_camera});
   }
+  void wait(int frames) { taken_ += frames; }
   void move(int from, int to) {
     for (int view = from; view != to; view += from < to ? 1 : -1) see(view);
   }

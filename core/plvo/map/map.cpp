@@ -18,6 +18,8 @@ constexpr std::uint32_t kJudgedKeyframes = 10;
 constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
 // While the place is unknown, the score of a single such descriptor suffices.
 constexpr std::uint32_t kLeastScoreUnplaced = PlaceIndex::kWholeVote;
+// The most promising views that a keyframe is compared with.
+constexpr std::size_t kCandidatesPlaced = 4;
 // A place is recognised when this many hypotheses agree, with this many inliers together. Hypotheses of a
 // room that looks alike have few inliers each.
 constexpr int kLeastAgreeing = 3, kLeastInliersTogether = 120;
@@ -33,6 +35,9 @@ constexpr double kSameViewMove = 0.5, kSameViewTurn_rad = 0.5;
 // A motion more uncertain than this (m² + rad²) counts as unobserved: keyframes before it are not recent, and
 // two hypotheses whose difference is more uncertain neither agree nor contradict.
 constexpr double kMostSeenVariance = 0.1;
+// After a motion more uncertain than this (m² + rad²), a new part of the map begins: the camera was carried,
+// or lost for seconds.
+constexpr double kUnknownMotionVariance = 1;
 // Neighbours that are searched anew for each frame.
 constexpr int kRefreshedPerFrame = 2;
 
@@ -70,7 +75,6 @@ void Map::clear() {
   memory_.graph.clear();
   std::fill(memory_.neighbours.begin(), memory_.neighbours.end(), MapMemory::Neighbour());
   candidate_count_ = hypothesis_count_ = refreshed_ = 0;
-  is_judged_ = true;
   follows_camera_ = false;
 }
 
@@ -87,10 +91,7 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
       (!follows_camera_ || view.features->stamp_ns != keyframe_stamp_ns_)) {
     add_keyframe(view, result, out);
   } else {
-    if (candidate_count_ > 0)
-      compare_next();
-    else if (!is_judged_)
-      judge(out);
+    if (candidate_count_ > 0) compare_next(out);
     memory_.graph.step();
     for (int i = 0; i < kRefreshedPerFrame && memory_.graph.size() > 0; ++i) {
       refreshed_ = (refreshed_ + 1) % memory_.graph.size();
@@ -140,9 +141,10 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                                     inverse_covariance(T_world_keyframe_, world_covariance_),
                                     view.T_world_camera, result.pose_covariance);
   }
-  if (!is_judged_) judge(out);
+  if (candidate_count_ > 0) judge(out);
   // To be read before a keyframe is removed, which may be the latest one.
-  const bool begins_part = memory_.graph.size() == 0 || !follows_camera_;
+  const bool begins_part =
+      memory_.graph.size() == 0 || !follows_camera_ || covariance.trace() > kUnknownMotionVariance;
   const std::uint32_t part =
       begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;
   if (memory_.graph.full()) {
@@ -181,8 +183,7 @@ void Map::measure_depth(std::uint16_t slot) {
 
 bool Map::settle() {
   MapResult out;
-  while (candidate_count_ > 0) compare_next();
-  if (!is_judged_) judge(out);
+  while (candidate_count_ > 0) compare_next(out);
   while (!memory_.graph.idle()) memory_.graph.step();
   return out.recognised;
 }
@@ -257,20 +258,25 @@ void Map::find_candidates(std::uint16_t slot) {
     memory_.excluded[memory_.graph.slot_at(k)] = 1;
     if (node.motion_covariance.trace() > kMostSeenVariance) break;
   }
-  FixedVector<PlaceCandidate> best(candidates_);
+  const bool is_placed = memory_.graph.is_placed(slot);
+  const std::span<PlaceCandidate> room(candidates_);
+  FixedVector<PlaceCandidate> best(room.first(is_placed ? kCandidatesPlaced : kCandidates));
   memory_.index.query(all_descriptors(), memory_.features.at(slot).descriptors, memory_.excluded, best);
   candidate_count_ = 0;
   for (const PlaceCandidate& candidate : best)
-    if (candidate.score >= (memory_.graph.is_placed(slot) ? kLeastScore : kLeastScoreUnplaced))
-      ++candidate_count_;
-  is_judged_ = candidate_count_ == 0;
+    if (candidate.score >= (is_placed ? kLeastScore : kLeastScoreUnplaced)) ++candidate_count_;
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }
 
-// Compares the latest keyframe with the most promising candidate that is left.
-void Map::compare_next() {
+// Compares the latest keyframe with the most promising candidate that is left. After the last one, judges.
+void Map::compare_next(MapResult& out) {
+  compare_with(candidates_[--candidate_count_].slot);
+  if (candidate_count_ == 0) judge(out);
+}
+
+void Map::compare_with(std::uint16_t slot) {
   Hypothesis latest;
-  latest.old_slot = candidates_[--candidate_count_].slot;
+  latest.old_slot = slot;
   latest.new_slot = memory_.graph.last();
   ++counts_.compared;
   latest.loop = check_(memory_.features.at(latest.old_slot), memory_.features.at(latest.new_slot), arena_);
@@ -329,10 +335,9 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   return lies_within(boxminus(by_a, by_b), covariance) ? Relation::kAgree : Relation::kContradict;
 }
 
-// Called after the last comparison of a keyframe. The best of its hypotheses and those that agree with it
-// become loops, if they are enough and no hypothesis contradicts them.
+// Called after the last comparison of a keyframe, or before the next keyframe. The best of its hypotheses and
+// those that agree with it become loops, if they are enough and no hypothesis contradicts them.
 void Map::judge(MapResult& out) {
-  is_judged_ = true;
   if (hypothesis_count_ == 0) return;
   const std::span<Hypothesis> all = std::span(hypotheses_).first(hypothesis_count_);
   const std::uint16_t newest = all.back().new_slot;

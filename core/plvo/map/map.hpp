@@ -38,8 +38,9 @@
 namespace plvo {
 
 struct MapResult {
-  // Whether the map knows where the camera is. After load(), and in another world of the odometry
-  // (TrackResult::world), it does not until a place is recognised; T_map_world has no meaning until then.
+  // Whether the map knows where the camera is. After load(), in another world of the odometry
+  // (TrackResult::world), and after the camera was lost so long that it may be anywhere within some metres,
+  // it does not until a place is recognised; T_map_world has no meaning until then.
   bool located = false;
   Se3 T_map_world;
   // Covariance of the ⊞-perturbation of T_map_world · T_world_camera, in the axes of the map. After a motion
@@ -146,14 +147,15 @@ class Map {
     LoopMeasurement loop;
     bool joined = false;  // the graph
   };
-  static constexpr std::size_t kCandidates = 4;
+  static constexpr std::size_t kCandidates = 8;
   static constexpr std::size_t kHypotheses = 24;
 
   void add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
   std::uint16_t least_needed() const;
   void remove(std::uint16_t slot, MapResult& out);
   void find_candidates(std::uint16_t slot);
-  void compare_next();
+  void compare_next(MapResult& out);
+  void compare_with(std::uint16_t slot);
   bool plausible(const Hypothesis& hypothesis) const;
   enum class Relation : std::uint8_t { kAgree, kContradict, kUnrelated };
   Relation compare(const Hypothesis& a, const Hypothesis& b) const;
@@ -176,7 +178,6 @@ class Map {
   Matrix6 world_covariance_ = Matrix6::Zero();
   std::array<PlaceCandidate, kCandidates> candidates_;  // of the latest keyframe, the next to compare last
   std::size_t candidate_count_ = 0;
-  bool is_judged_ = true;                           // what the comparisons of the latest keyframe gave
   std::array<Hypothesis, kHypotheses> hypotheses_;  // the latest, oldest first
   std::size_t hypothesis_count_ = 0;
   Counts counts_;

@@ -10,8 +10,8 @@
 // gradients (as the subgraph of Dellaert, Carlson, Ila, Ni & Thorpe, IROS 2010). A loop only adds the sum of
 // the y that it spans. Loops have Huber's loss; their weights are renewed with each linearisation.
 //
-// Nodes with an unknown motion between them belong to different parts of the graph. When the place of a part
-// is found, the whole part moves there at once.
+// Nodes with an unknown or very uncertain motion between them belong to different parts of the graph. When
+// the place of a part is found, the whole part moves there at once.
 //
 // step() does a bounded part of the work: it linearises at most kEdgesPerStep edges, or takes at most
 // kIterationsPerStep iterations, each of which visits every edge once.
