@@ -35,9 +35,9 @@ constexpr double kSameViewMove = 0.5, kSameViewTurn_rad = 0.5;
 // A motion more uncertain than this (m² + rad²) counts as unobserved: keyframes before it are not recent, and
 // two hypotheses whose difference is more uncertain neither agree nor contradict.
 constexpr double kMostSeenVariance = 0.1;
-// After a motion more uncertain than this (m² + rad²), a new part of the map begins: the camera was carried,
-// or lost for seconds.
-constexpr double kUnknownMotionVariance = 1;
+// A place more uncertain than this (m² + rad²) is as good as unknown: the camera was carried, or lost for
+// seconds.
+constexpr double kUnknownPlaceVariance = 1;
 // Neighbours that are searched anew for each frame.
 constexpr int kRefreshedPerFrame = 2;
 
@@ -143,8 +143,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   }
   if (candidate_count_ > 0) judge(out);
   // To be read before a keyframe is removed, which may be the latest one.
-  const bool begins_part =
-      memory_.graph.size() == 0 || !follows_camera_ || covariance.trace() > kUnknownMotionVariance;
+  const bool begins_part = memory_.graph.size() == 0 || !follows_camera_;
   const std::uint32_t part =
       begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;
   if (memory_.graph.full()) {
@@ -249,6 +248,12 @@ void Map::remove(std::uint16_t slot, MapResult& out) {
       hypotheses_.begin());
 }
 
+bool Map::place_is_known(std::uint16_t slot) const {
+  const PoseGraph::Node& node = memory_.graph.node(slot);
+  return memory_.graph.is_placed(slot) &&
+         about_position(node.covariance, node.T_map_keyframe.t).trace() <= kUnknownPlaceVariance;
+}
+
 void Map::find_candidates(std::uint16_t slot) {
   std::fill(memory_.excluded.begin(), memory_.excluded.end(), std::uint8_t{0});
   const std::uint32_t id = memory_.graph.node(slot).id;
@@ -258,13 +263,13 @@ void Map::find_candidates(std::uint16_t slot) {
     memory_.excluded[memory_.graph.slot_at(k)] = 1;
     if (node.motion_covariance.trace() > kMostSeenVariance) break;
   }
-  const bool is_placed = memory_.graph.is_placed(slot);
+  const bool is_known = place_is_known(slot);
   const std::span<PlaceCandidate> room(candidates_);
-  FixedVector<PlaceCandidate> best(room.first(is_placed ? kCandidatesPlaced : kCandidates));
+  FixedVector<PlaceCandidate> best(room.first(is_known ? kCandidatesPlaced : kCandidates));
   memory_.index.query(all_descriptors(), memory_.features.at(slot).descriptors, memory_.excluded, best);
   candidate_count_ = 0;
   for (const PlaceCandidate& candidate : best)
-    if (candidate.score >= (is_placed ? kLeastScore : kLeastScoreUnplaced)) ++candidate_count_;
+    if (candidate.score >= (is_known ? kLeastScore : kLeastScoreUnplaced)) ++candidate_count_;
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }
 
@@ -354,7 +359,11 @@ void Map::judge(MapResult& out) {
     inliers += agrees[i] ? all[i].loop.inliers : 0;
   }
   if (agreeing < kLeastAgreeing || inliers < kLeastInliersTogether) return;
-  memory_.graph.join_parts(best->old_slot, best->new_slot, best->loop.T_old_new, best->loop.covariance);
+  const LoopMeasurement& loop = best->loop;
+  memory_.graph.join_parts(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance);
+  const Vector3& t = memory_.graph.node(best->new_slot).T_map_keyframe.t;
+  if (about_position(between(best->old_slot, best->new_slot, t), t).trace() > kUnknownPlaceVariance)
+    memory_.graph.move_behind_least_certain(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance);
   for (std::size_t i = 0; i < all.size(); ++i) {
     Hypothesis& h = all[i];
     if (!agrees[i] || h.joined) continue;

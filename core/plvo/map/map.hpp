@@ -38,9 +38,8 @@
 namespace plvo {
 
 struct MapResult {
-  // Whether the map knows where the camera is. After load(), in another world of the odometry
-  // (TrackResult::world), and after the camera was lost so long that it may be anywhere within some metres,
-  // it does not until a place is recognised; T_map_world has no meaning until then.
+  // Whether the map knows where the camera is. After load(), and in another world of the odometry
+  // (TrackResult::world), it does not until a place is recognised; T_map_world has no meaning until then.
   bool located = false;
   Se3 T_map_world;
   // Covariance of the ⊞-perturbation of T_map_world · T_world_camera, in the axes of the map. After a motion
@@ -153,6 +152,7 @@ class Map {
   void add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
   std::uint16_t least_needed() const;
   void remove(std::uint16_t slot, MapResult& out);
+  bool place_is_known(std::uint16_t slot) const;
   void find_candidates(std::uint16_t slot);
   void compare_next(MapResult& out);
   void compare_with(std::uint16_t slot);

@@ -140,6 +140,27 @@ void PoseGraph::join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, c
   relax_along_chain();
 }
 
+void PoseGraph::move_behind_least_certain(std::uint16_t a, std::uint16_t b, const Se3& T_a_b,
+                                          const Matrix6& covariance) {
+  if (a == b) return;
+  note_change();
+  const bool in_order = nodes_[a].position < nodes_[b].position;
+  const Node& older = nodes_[in_order ? a : b];
+  Node& newer = nodes_[in_order ? b : a];
+  const Se3 T_older_newer = in_order ? T_a_b : T_a_b.inverse();
+  const Matrix6 of_motion = in_order ? covariance : inverse_covariance(T_a_b, covariance);
+  std::size_t first = older.position + std::size_t{1};
+  for (std::size_t k = first; k <= newer.position; ++k)
+    if (at(k).motion_covariance.trace() > at(first).motion_covariance.trace()) first = k;
+  const Se3 displacement = older.T_map_keyframe * T_older_newer * newer.T_map_keyframe.inverse();
+  for (std::size_t k = first; k < size_; ++k) {
+    at(k).T_map_keyframe = displacement * at(k).T_map_keyframe;
+    at(k).T_map_keyframe.R = renormalise(at(k).T_map_keyframe.R);
+  }
+  newer.covariance = older.covariance + motion_in_map(older.T_map_keyframe, T_older_newer, of_motion);
+  relax_along_chain();
+}
+
 PoseGraph::Removed PoseGraph::remove(std::uint16_t slot) {
   note_change();
   Node& node = nodes_[slot];

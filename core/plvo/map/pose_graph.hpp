@@ -10,8 +10,8 @@
 // gradients (as the subgraph of Dellaert, Carlson, Ila, Ni & Thorpe, IROS 2010). A loop only adds the sum of
 // the y that it spans. Loops have Huber's loss; their weights are renewed with each linearisation.
 //
-// Nodes with an unknown or very uncertain motion between them belong to different parts of the graph. When
-// the place of a part is found, the whole part moves there at once.
+// Nodes with an unknown motion between them belong to different parts of the graph. When the place of a part
+// is found, the whole part moves there at once.
 //
 // step() does a bounded part of the work: it linearises at most kEdgesPerStep edges, or takes at most
 // kIterationsPerStep iterations, each of which visits every edge once.
@@ -91,6 +91,10 @@ class PoseGraph {
   // If the nodes belong to two parts, the part that began later moves to where the motion puts it, and is
   // merged with the other.
   void join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
+  // Moves all nodes behind the least certain motion between the two to where T_a_b puts them, as a whole and
+  // at once. For nodes whose place was as good as unknown: the solution would need many steps for that.
+  void move_behind_least_certain(std::uint16_t a, std::uint16_t b, const Se3& T_a_b,
+                                 const Matrix6& covariance);
   // Adds a measured motion. If there is no room, it replaces the most uncertain loop.
   void add_loop(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
   // Removes a node. Its neighbours' motions are composed; its loops go to the neighbour whose motion is more

@@ -29,9 +29,8 @@ PLVO_API void plvo_map_limits_init(plvo_map_limits* limits, size_t size);
 /* Matrices as in plvo_result. */
 typedef struct plvo_map_result {
   uint32_t struct_size;
-  /* 1: it is known where the camera is in the map. 0 after plvo_map_load, in another plvo_result.world, and
-   * after a long loss, until a place is recognised: T_map_world has no meaning, and pose_covariance is large.
-   */
+  /* 1: it is known where the camera is in the map. 0 after plvo_map_load, and in another plvo_result.world,
+   * until a place is recognised: T_map_world has no meaning, and pose_covariance is large. */
   int32_t located;
   int32_t recognised; /* 1: a place was, in this frame */
   uint32_t keyframe;  /* the latest one; 0: none yet */

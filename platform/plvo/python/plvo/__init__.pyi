@@ -707,7 +707,7 @@ class MapResult:
     def located(self) -> bool:
         """Whether the map knows where the camera is.
 
-        False after Map.load, in a new world of the odometry, and after a long loss, until a place is recognised. T_map_world has no meaning until then.
+        False after Map.load, and in a new world of the odometry, until a place is recognised. T_map_world has no meaning until then.
         """
     @property
     def recognised(self) -> bool:
