@@ -237,6 +237,34 @@ TEST(PoseGraph, APartMovesAsAWholeToWhereItsPlaceIsFound) {
   }
 }
 
+// A part that was joined keeps its place, though the motion before it is the least certain one of all.
+TEST(PoseGraph, OnlyNodesWhosePlaceIsUnknownMove) {
+  const std::vector<Se3> truth = circle(20);
+  Graph g(20);
+  PoseGraph& graph = g.graph;
+  append_all(graph, std::vector<Se3>(truth.begin(), truth.begin() + 10), 3);
+  graph.append(Se3(), covariance(100, 3), graph.next_id());
+  for (std::size_t k = 11; k < 20; ++k) {
+    const double worse = k == 15 ? 1000 : 1;
+    graph.append(truth[k - 1].inverse() * truth[k], covariance(worse * kStep_m, worse * kStep_rad));
+  }
+  const auto slot = [&](std::size_t k) { return graph.slot_at(k); };
+  graph.join_parts(slot(2), slot(12), truth[2].inverse() * truth[12], covariance(0.01, 0.01));
+  const std::vector<Se3> before = poses_of(graph);
+  for (std::size_t k = 0; k < 20; ++k) EXPECT_EQ(graph.variance_of_place(slot(k)) > 1, k >= 15) << k;
+  // The later node's place is known: nothing moves.
+  graph.move_unknown(slot(3), slot(13), Se3(), covariance(0.01, 0.01), 1);
+  EXPECT_EQ(poses_of(graph)[13].t, before[13].t);
+  const Se3 T_a_b{Matrix3::Identity(), {1, 2, 3}};
+  graph.move_unknown(slot(17), slot(4), T_a_b.inverse(), covariance(0.01, 0.01), 1);
+  const std::vector<Se3> after = poses_of(graph);
+  for (std::size_t k = 0; k < 20; ++k) {
+    const Se3 expected = k < 15 ? before[k] : before[4] * T_a_b * before[17].inverse() * before[k];
+    EXPECT_LT(boxminus(after[k], expected).norm(), k < 15 ? 1e-300 : 1e-9) << k;
+    EXPECT_LT(graph.variance_of_place(slot(k)), 0.1) << k;
+  }
+}
+
 TEST(PoseGraph, TheCovarianceIsAtLeastTheMarginalOfTheDenseProblem) {
   const std::vector<Se3> truth = circle(12);
   Graph g(12);

@@ -65,7 +65,7 @@ function(plvo_seal target)
     -P ${PROJECT_SOURCE_DIR}/tools/cmake/seal_archive.cmake)
 endfunction()
 
-# plvo_core_variant(<name> <options…>): a second build of the core with other options, for tests that compare or instrument
+# plvo_core_variant(<name> <options…>): a second build of the core with other options, for tests that compare
 # it. The options follow those of the build type, so their optimisation level takes effect.
 function(plvo_core_variant name)
   get_target_property(sources plvo_core PLVO_SOURCES)

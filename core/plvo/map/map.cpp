@@ -17,9 +17,9 @@ constexpr std::uint32_t kJudgedKeyframes = 10;
 // The score that a keyframe needs to be compared: that of six descriptors that vote for it alone.
 constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
 // While the place is unknown, the score of a single such descriptor suffices.
-constexpr std::uint32_t kLeastScoreUnplaced = PlaceIndex::kWholeVote;
-// The most promising views that a keyframe is compared with.
-constexpr std::size_t kCandidatesPlaced = 4;
+constexpr std::uint32_t kLeastScoreUnknown = PlaceIndex::kWholeVote;
+// The most promising views that a keyframe is compared with; kCandidates while the place is unknown.
+constexpr std::size_t kCandidatesKnown = 4;
 // A place is recognised when this many hypotheses agree, with this many inliers together. Hypotheses of a
 // room that looks alike have few inliers each.
 constexpr int kLeastAgreeing = 3, kLeastInliersTogether = 120;
@@ -249,9 +249,7 @@ void Map::remove(std::uint16_t slot, MapResult& out) {
 }
 
 bool Map::place_is_known(std::uint16_t slot) const {
-  const PoseGraph::Node& node = memory_.graph.node(slot);
-  return memory_.graph.is_placed(slot) &&
-         about_position(node.covariance, node.T_map_keyframe.t).trace() <= kUnknownPlaceVariance;
+  return memory_.graph.is_placed(slot) && memory_.graph.variance_of_place(slot) <= kUnknownPlaceVariance;
 }
 
 void Map::find_candidates(std::uint16_t slot) {
@@ -265,11 +263,11 @@ void Map::find_candidates(std::uint16_t slot) {
   }
   const bool is_known = place_is_known(slot);
   const std::span<PlaceCandidate> room(candidates_);
-  FixedVector<PlaceCandidate> best(room.first(is_known ? kCandidatesPlaced : kCandidates));
+  FixedVector<PlaceCandidate> best(room.first(is_known ? kCandidatesKnown : kCandidates));
   memory_.index.query(all_descriptors(), memory_.features.at(slot).descriptors, memory_.excluded, best);
   candidate_count_ = 0;
   for (const PlaceCandidate& candidate : best)
-    if (candidate.score >= (is_known ? kLeastScore : kLeastScoreUnplaced)) ++candidate_count_;
+    if (candidate.score >= (is_known ? kLeastScore : kLeastScoreUnknown)) ++candidate_count_;
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }
 
@@ -363,7 +361,8 @@ void Map::judge(MapResult& out) {
   memory_.graph.join_parts(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance);
   const Vector3& t = memory_.graph.node(best->new_slot).T_map_keyframe.t;
   if (about_position(between(best->old_slot, best->new_slot, t), t).trace() > kUnknownPlaceVariance)
-    memory_.graph.move_behind_least_certain(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance);
+    memory_.graph.move_unknown(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance,
+                               kUnknownPlaceVariance);
   for (std::size_t i = 0; i < all.size(); ++i) {
     Hypothesis& h = all[i];
     if (!agrees[i] || h.joined) continue;

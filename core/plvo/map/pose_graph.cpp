@@ -28,6 +28,16 @@ Matrix6 transform(const Matrix6& C, const Matrix3& lever) {
 // The sum of the variances of position and orientation (m², rad²) at t.
 double spread(const Matrix6& covariance, const Vector3& t) { return about_position(covariance, t).trace(); }
 
+// The measured motion from one node to another, given that in either direction.
+struct Motion {
+  Se3 T;
+  Matrix6 covariance;
+};
+Motion directed(bool forwards, const Se3& T, const Matrix6& covariance) {
+  if (forwards) return {T, covariance};
+  return {T.inverse(), inverse_covariance(T, covariance)};
+}
+
 }  // namespace
 
 Matrix6 about_origin(const Matrix6& covariance, const Vector3& t) { return transform(covariance, skew(t)); }
@@ -102,9 +112,9 @@ void PoseGraph::add_loop(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, con
   Loop loop;
   loop.older = in_order ? a : b;
   loop.newer = in_order ? b : a;
-  loop.T_older_newer = in_order ? T_a_b : T_a_b.inverse();
-  loop.covariance = in_order ? covariance : inverse_covariance(T_a_b, covariance);
-  loop.covariance += kMotionFloor * Matrix6::Identity();
+  const Motion motion = directed(in_order, T_a_b, covariance);
+  loop.T_older_newer = motion.T;
+  loop.covariance = motion.covariance + kMotionFloor * Matrix6::Identity();
   keep_loop(loop);
 }
 
@@ -121,18 +131,41 @@ void PoseGraph::keep_loop(const Loop& loop) {
 
 void PoseGraph::join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance) {
   if (nodes_[a].part == nodes_[b].part) return;
-  note_change();
   const bool b_moves = nodes_[a].part < nodes_[b].part;
   const Node& stays = nodes_[b_moves ? a : b];
   Node& moves = nodes_[b_moves ? b : a];
-  const Se3 T_stays_moves = b_moves ? T_a_b : T_a_b.inverse();
-  const Matrix6 of_motion = b_moves ? covariance : inverse_covariance(T_a_b, covariance);
-  const Se3 displacement = stays.T_map_keyframe * T_stays_moves * moves.T_map_keyframe.inverse();
   const std::uint32_t part = moves.part;
+  const Motion motion = directed(b_moves, T_a_b, covariance);
+  place(stays, moves, motion.T, motion.covariance, [part](const Node& node) { return node.part == part; });
+  for (std::size_t k = 0; k < size_; ++k)
+    if (at(k).part == part) at(k).part = stays.part;
+}
+
+void PoseGraph::move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance,
+                             double unknown) {
+  if (a == b) return;
+  const bool in_order = nodes_[a].position < nodes_[b].position;
+  const Node& older = nodes_[in_order ? a : b];
+  Node& newer = nodes_[in_order ? b : a];
+  std::size_t first = newer.position;
+  if (variance_of_place(order_[first]) <= unknown) return;
+  for (std::size_t k = first; k > older.position && variance_of_place(order_[k]) > unknown; --k)
+    if (at(k).motion_covariance.trace() > at(first).motion_covariance.trace()) first = k;
+  const Motion motion = directed(in_order, T_a_b, covariance);
+  place(older, newer, motion.T, motion.covariance,
+        [first](const Node& node) { return node.position >= first; });
+}
+
+// Moves the nodes that `is_moved` selects, as a whole, so that `moves` is where the motion from `stays` puts
+// it.
+template <typename IsMoved>
+void PoseGraph::place(const Node& stays, Node& moves, const Se3& T_stays_moves, const Matrix6& of_motion,
+                      const IsMoved& is_moved) {
+  note_change();
+  const Se3 displacement = stays.T_map_keyframe * T_stays_moves * moves.T_map_keyframe.inverse();
   for (std::size_t k = 0; k < size_; ++k) {
     Node& node = at(k);
-    if (node.part != part) continue;
-    node.part = stays.part;
+    if (!is_moved(node)) continue;
     node.T_map_keyframe = displacement * node.T_map_keyframe;
     node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
   }
@@ -140,25 +173,8 @@ void PoseGraph::join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, c
   relax_along_chain();
 }
 
-void PoseGraph::move_behind_least_certain(std::uint16_t a, std::uint16_t b, const Se3& T_a_b,
-                                          const Matrix6& covariance) {
-  if (a == b) return;
-  note_change();
-  const bool in_order = nodes_[a].position < nodes_[b].position;
-  const Node& older = nodes_[in_order ? a : b];
-  Node& newer = nodes_[in_order ? b : a];
-  const Se3 T_older_newer = in_order ? T_a_b : T_a_b.inverse();
-  const Matrix6 of_motion = in_order ? covariance : inverse_covariance(T_a_b, covariance);
-  std::size_t first = older.position + std::size_t{1};
-  for (std::size_t k = first; k <= newer.position; ++k)
-    if (at(k).motion_covariance.trace() > at(first).motion_covariance.trace()) first = k;
-  const Se3 displacement = older.T_map_keyframe * T_older_newer * newer.T_map_keyframe.inverse();
-  for (std::size_t k = first; k < size_; ++k) {
-    at(k).T_map_keyframe = displacement * at(k).T_map_keyframe;
-    at(k).T_map_keyframe.R = renormalise(at(k).T_map_keyframe.R);
-  }
-  newer.covariance = older.covariance + motion_in_map(older.T_map_keyframe, T_older_newer, of_motion);
-  relax_along_chain();
+double PoseGraph::variance_of_place(std::uint16_t slot) const {
+  return spread(nodes_[slot].covariance, nodes_[slot].T_map_keyframe.t);
 }
 
 PoseGraph::Removed PoseGraph::remove(std::uint16_t slot) {
@@ -189,18 +205,17 @@ PoseGraph::Removed PoseGraph::remove(std::uint16_t slot) {
     }
     const bool removed_is_newer = loop.newer == slot;
     const std::uint16_t other = removed_is_newer ? loop.older : loop.newer;
-    const Se3 T_other_slot = removed_is_newer ? loop.T_older_newer : loop.T_older_newer.inverse();
-    const Matrix6 C_other_slot =
-        removed_is_newer ? loop.covariance : inverse_covariance(loop.T_older_newer, loop.covariance);
+    const Motion other_slot = directed(removed_is_newer, loop.T_older_newer, loop.covariance);
     if (other == removed.into || has_loop(other, removed.into)) continue;
     const bool in_order = nodes_[other].position < nodes_[removed.into].position;
-    const Se3 T = T_other_slot * T_slot_into;
-    const Matrix6 C = compose_covariance(T_other_slot, C_other_slot, T_slot_into, C_slot_into);
+    const Motion other_into =
+        directed(in_order, other_slot.T * T_slot_into,
+                 compose_covariance(other_slot.T, other_slot.covariance, T_slot_into, C_slot_into));
     Loop& moved = loops_[loop_count_++];
     moved.older = in_order ? other : removed.into;
     moved.newer = in_order ? removed.into : other;
-    moved.T_older_newer = in_order ? T : T.inverse();
-    moved.covariance = in_order ? C : inverse_covariance(T, C);
+    moved.T_older_newer = other_into.T;
+    moved.covariance = other_into.covariance;
   }
 
   if (has_previous && has_next) {

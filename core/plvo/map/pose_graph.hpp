@@ -91,10 +91,13 @@ class PoseGraph {
   // If the nodes belong to two parts, the part that began later moves to where the motion puts it, and is
   // merged with the other.
   void join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
-  // Moves all nodes behind the least certain motion between the two to where T_a_b puts them, as a whole and
-  // at once. For nodes whose place was as good as unknown: the solution would need many steps for that.
-  void move_behind_least_certain(std::uint16_t a, std::uint16_t b, const Se3& T_a_b,
-                                 const Matrix6& covariance);
+  // The sum of the variances of a node's position and orientation (m² + rad²).
+  double variance_of_place(std::uint16_t slot) const;
+  // If the place of the later node is more uncertain than `unknown` (m² + rad²), moves it to where T_a_b puts
+  // it, and with it the nodes behind it and those before it whose place is unknown, too, from the least
+  // certain motion among them on: as a whole and at once, as the solution would need many steps for that.
+  void move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance,
+                    double unknown);
   // Adds a measured motion. If there is no room, it replaces the most uncertain loop.
   void add_loop(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
   // Removes a node. Its neighbours' motions are composed; its loops go to the neighbour whose motion is more
@@ -129,6 +132,9 @@ class PoseGraph {
   bool apply();
   void relax(Node& node, const Node& from, const Se3& T_from_node, const Matrix6& between) const;
   void relax_along_chain();
+  template <typename IsMoved>
+  void place(const Node& stays, Node& moves, const Se3& T_stays_moves, const Matrix6& of_motion,
+             const IsMoved& is_moved);
   void keep_loop(const Loop& loop);
 
   std::span<Node> nodes_;           // by slot
