@@ -75,6 +75,7 @@ void Map::clear() {
   memory_.graph.clear();
   std::fill(memory_.neighbours.begin(), memory_.neighbours.end(), MapMemory::Neighbour());
   candidate_count_ = hypothesis_count_ = refreshed_ = 0;
+  is_judged_ = true;
   follows_camera_ = false;
 }
 
@@ -91,7 +92,10 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
       (!follows_camera_ || view.features->stamp_ns != keyframe_stamp_ns_)) {
     add_keyframe(view, result, out);
   } else {
-    if (candidate_count_ > 0) compare_next(out);
+    if (candidate_count_ > 0)
+      compare_next();
+    else if (!is_judged_)
+      judge(out);
     memory_.graph.step();
     for (int i = 0; i < kRefreshedPerFrame && memory_.graph.size() > 0; ++i) {
       refreshed_ = (refreshed_ + 1) % memory_.graph.size();
@@ -141,7 +145,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                                     inverse_covariance(T_world_keyframe_, world_covariance_),
                                     view.T_world_camera, result.pose_covariance);
   }
-  if (candidate_count_ > 0) judge(out);
+  if (!is_judged_) judge(out);
   // To be read before a keyframe is removed, which may be the latest one.
   const bool begins_part = memory_.graph.size() == 0 || !follows_camera_;
   const std::uint32_t part =
@@ -182,7 +186,8 @@ void Map::measure_depth(std::uint16_t slot) {
 
 bool Map::settle() {
   MapResult out;
-  while (candidate_count_ > 0) compare_next(out);
+  while (candidate_count_ > 0) compare_next();
+  if (!is_judged_) judge(out);
   while (!memory_.graph.idle()) memory_.graph.step();
   return out.recognised;
 }
@@ -268,18 +273,14 @@ void Map::find_candidates(std::uint16_t slot) {
   candidate_count_ = 0;
   for (const PlaceCandidate& candidate : best)
     if (candidate.score >= (is_known ? kLeastScore : kLeastScoreUnknown)) ++candidate_count_;
+  is_judged_ = candidate_count_ == 0;
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }
 
-// Compares the latest keyframe with the most promising candidate that is left. After the last one, judges.
-void Map::compare_next(MapResult& out) {
-  compare_with(candidates_[--candidate_count_].slot);
-  if (candidate_count_ == 0) judge(out);
-}
-
-void Map::compare_with(std::uint16_t slot) {
+// Compares the latest keyframe with the most promising candidate that is left.
+void Map::compare_next() {
   Hypothesis latest;
-  latest.old_slot = slot;
+  latest.old_slot = candidates_[--candidate_count_].slot;
   latest.new_slot = memory_.graph.last();
   ++counts_.compared;
   latest.loop = check_(memory_.features.at(latest.old_slot), memory_.features.at(latest.new_slot), arena_);
@@ -338,9 +339,11 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   return lies_within(boxminus(by_a, by_b), covariance) ? Relation::kAgree : Relation::kContradict;
 }
 
-// Called after the last comparison of a keyframe, or before the next keyframe. The best of its hypotheses and
-// those that agree with it become loops, if they are enough and no hypothesis contradicts them.
+// Called in the frame after the last comparison of a keyframe, or before the next keyframe. The best of its
+// hypotheses and those that agree with it become loops, if they are enough and no hypothesis contradicts
+// them.
 void Map::judge(MapResult& out) {
+  is_judged_ = true;
   if (hypothesis_count_ == 0) return;
   const std::span<Hypothesis> all = std::span(hypotheses_).first(hypothesis_count_);
   const std::uint16_t newest = all.back().new_slot;

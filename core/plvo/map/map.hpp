@@ -146,7 +146,7 @@ class Map {
     LoopMeasurement loop;
     bool joined = false;  // the graph
   };
-  static constexpr std::size_t kCandidates = 8;
+  static constexpr std::size_t kCandidates = 7;
   static constexpr std::size_t kHypotheses = 24;
 
   void add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
@@ -154,8 +154,7 @@ class Map {
   void remove(std::uint16_t slot, MapResult& out);
   bool place_is_known(std::uint16_t slot) const;
   void find_candidates(std::uint16_t slot);
-  void compare_next(MapResult& out);
-  void compare_with(std::uint16_t slot);
+  void compare_next();
   bool plausible(const Hypothesis& hypothesis) const;
   enum class Relation : std::uint8_t { kAgree, kContradict, kUnrelated };
   Relation compare(const Hypothesis& a, const Hypothesis& b) const;
@@ -178,6 +177,7 @@ class Map {
   Matrix6 world_covariance_ = Matrix6::Zero();
   std::array<PlaceCandidate, kCandidates> candidates_;  // of the latest keyframe, the next to compare last
   std::size_t candidate_count_ = 0;
+  bool is_judged_ = true;                           // what the comparisons of the latest keyframe gave
   std::array<Hypothesis, kHypotheses> hypotheses_;  // the latest, oldest first
   std::size_t hypothesis_count_ = 0;
   Counts counts_;
