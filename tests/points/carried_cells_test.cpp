@@ -70,18 +70,28 @@ TEST(CarriedCells, WithoutNewEvidenceVotesFallUntilTheCellIsTriedAgain) {
 
 TEST(CarriedCells, ACertainFrameMarksTheCellsAroundToo) {
   CarriedCells image = empty_cells();
-  image.mark_carried(counts_at(0, 1));
+  image.mark_carried(counts_at(0, 1), false);
   EXPECT_EQ(image.count(), 4);  // a corner of the image
-  image.mark_carried(counts_at(CarriedCells::kColumns * 5 + 5, 1));
+  image.mark_carried(counts_at(CarriedCells::kColumns * 5 + 5, 1), false);
   EXPECT_EQ(image.count(), 4 + 9);
   image.forget();
   EXPECT_EQ(image.count(), 0);
   EXPECT_EQ(image.bounds().right, 0);
 }
 
+TEST(CarriedCells, LightIsRememberedWhileACellIsCarried) {
+  CarriedCells image = empty_cells();
+  image.mark_carried(counts_at(0, 1), true);
+  EXPECT_TRUE(image.has_light());
+  image.mark_carried(counts_at(5, 1), false);
+  EXPECT_TRUE(image.has_light());
+  for (int reference = 0; reference < 1000 && image.count() > 0; ++reference) image.vote({}, {});
+  EXPECT_FALSE(image.has_light());
+}
+
 TEST(CarriedCells, KeypointsThereLoseTheir3DPoints) {
   CarriedCells image = empty_cells();
-  image.mark_carried(counts_at(image.cell_of(Vector2(100, 100)), 1));
+  image.mark_carried(counts_at(image.cell_of(Vector2(100, 100)), 1), false);
   std::vector<std::byte> memory(1 << 20);
   Arena arena(memory);
   PointFeatures features;

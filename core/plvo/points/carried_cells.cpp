@@ -14,6 +14,7 @@ void CarriedCells::init(int width, int height) {
 void CarriedCells::forget() {
   votes_.fill(0);
   count_ = told_ = references_ = 0;
+  has_light_ = false;
 }
 
 bool CarriedCells::take_news() {
@@ -36,7 +37,8 @@ void CarriedCells::vote(const Counts& stayed, const Counts& moved) {
   count_carried();
 }
 
-void CarriedCells::mark_carried(const Counts& stayed) {
+void CarriedCells::mark_carried(const Counts& stayed, bool is_light) {
+  has_light_ = has_light_ || is_light;
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; ++column) {
       if (stayed[static_cast<std::size_t>(row * kColumns + column)] == 0) continue;
@@ -78,6 +80,7 @@ void CarriedCells::remove_points(PointFeatures& points) const {
 void CarriedCells::count_carried() {
   count_ = static_cast<int>(
       std::count_if(votes_.begin(), votes_.end(), [](std::uint8_t vote) { return vote >= kCarried; }));
+  has_light_ = has_light_ && count_ > 0;
 }
 
 }  // namespace plvo

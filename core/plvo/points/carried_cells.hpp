@@ -39,8 +39,10 @@ class CarriedCells {
   // them; moved: features that are found where that motion puts them.
   void vote(const Counts& stayed, const Counts& moved);
   // Takes in a frame that alone is certain: the cells with features that stayed, and the cells beside them,
-  // are carried at once.
-  void mark_carried(const Counts& stayed);
+  // are carried at once. is_light: what stayed is light that the camera throws on the scene.
+  void mark_carried(const Counts& stayed, bool is_light);
+  // Whether light was found: carried cells may then show the scene as well.
+  bool has_light() const { return has_light_; }
 
   // The cell of a pixel; of one outside the image, the nearest cell.
   std::size_t cell_of(const Vector2& pixel) const;
@@ -74,6 +76,7 @@ class CarriedCells {
   int told_ = 0;        // count_ when take_news() last returned true
   int references_ = 0;  // since the votes fell
   int width_ = 1, height_ = 1;
+  bool has_light_ = false;
 };
 
 }  // namespace plvo

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "plvo/math/trigonometry.hpp"
+#include "plvo/motion/coverage.hpp"
 #include "plvo/points/alignment.hpp"
 
 namespace plvo {
@@ -11,6 +12,8 @@ namespace {
 
 // A match this near to the keypoint stayed at its pixel.
 constexpr double kStayed_px = 0.3;
+// A line stayed if both ends of its segment are this near to where it was.
+constexpr double kStayedLine_px = 0.6;
 // A keypoint takes part in the vote if the motion moves it by this much, in pixels of its level: its patch
 // would then not be taken for one that stayed.
 constexpr double kMoved_px = 3;
@@ -18,8 +21,12 @@ constexpr double kMoved_px = 3;
 // patch has to be more similar: it lies where it lay, without a change of perspective.
 constexpr AlignmentOptions kAtSamePixel{
     .max_iterations = 3, .max_shift_px = 2 * kStayed_px, .max_residual = 0.25};
-// The depth contradicts rest if so many points stayed, and less than two thirds of them are inliers.
+// The depth contradicts rest if so many points stayed, and a third of them has another depth than before: one
+// that differs by more than this many SDs.
 constexpr int kLeastContradicted = 30;
+constexpr double kOtherDepthSigmas = 3;
+// Nearly all matches are points that stayed if there are this many times as many as others.
+constexpr int kTimesTheOthers = 3;
 // The other matches must support their own motion this many times as much as that of the points that stayed,
 // and this share of its inliers must lie in cells with such points.
 constexpr int kTimesTheSupport = 3;
@@ -38,6 +45,21 @@ bool is_within(const Vector2& a, const Vector2& b, double radius) {
 bool has_stayed(const FrameFeatures& features, const PointTracks& points, const Match& match) {
   return is_within(points.pixels[match.current], pixel_of(features.points.keypoints[match.reference]),
                    kStayed_px);
+}
+
+bool has_other_depth(const Point3d& before, const Point3d& now) {
+  if (!(before.p.z() > 0 && now.p.z() > 0)) return false;
+  const double change = now.p.z() - before.p.z();
+  return change * change > kOtherDepthSigmas * kOtherDepthSigmas * (before.Sigma(2, 2) + now.Sigma(2, 2));
+}
+
+bool has_stayed(const Segment& before, const Segment& now) {
+  const Vector2 across = before.normal();
+  const auto is_near = [&](const Vector2& end) {
+    const double offset = across.dot(end - before.a);
+    return offset * offset < kStayedLine_px * kStayedLine_px;
+  };
+  return is_near(now.a) && is_near(now.b);
 }
 
 }  // namespace
@@ -77,6 +99,38 @@ bool has_stayed(const FrameFeatures& features, const PointTracks& points, const 
   cells.vote(stayed, moved);
 }
 
+[[gnu::noinline]] void leave_carried_lines_out(std::span<const Reference> references,
+                                               const LineFeatures& current, const CarriedCells& cells,
+                                               std::span<ReferenceTracks> tracks) {
+  if (cells.count() == 0 || cells.has_light()) return;
+  const auto is_of_robot = [&](const Segment& before, const Match& match) {
+    return cells.is_carried(before.middle()) && has_stayed(before, current.segments[match.current]);
+  };
+  int others = 0, moved = 0;
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    const FrameFeatures& features = *references[r].features;
+    for (const Match& match : tracks[r].points.matches) {
+      ++others;
+      moved += has_stayed(features, tracks[r].points, match) ? 0 : 1;
+    }
+    for (const Match& match : tracks[r].lines) {
+      const Segment& before = features.lines.segments[match.reference];
+      if (is_of_robot(before, match)) continue;
+      ++others;
+      moved += has_stayed(before, current.segments[match.current]) ? 0 : 1;
+    }
+  }
+  if (2 * moved <= others) return;
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    const FixedVector<Segment>& segments = references[r].features->lines.segments;
+    FixedVector<Match>& lines = tracks[r].lines;
+    std::size_t kept = 0;
+    for (const Match& match : lines)
+      if (!is_of_robot(segments[match.reference], match)) lines[kept++] = match;
+    lines.resize(kept);
+  }
+}
+
 StayedMatches count_stayed(std::span<const Reference> references, std::span<const ReferenceTracks> tracks,
                            const CarriedCells& cells) {
   StayedMatches counts;
@@ -89,6 +143,8 @@ StayedMatches count_stayed(std::span<const Reference> references, std::span<cons
         ++counts.cells[cells.cell_of(features.points.keypoints[points.matches[i].reference])];
         ++counts.stayed;
         counts.stayed_inliers += inlier;
+        if (has_other_depth(features.points.points[points.matches[i].reference], points.points[i]))
+          ++counts.other_depth;
       } else {
         ++counts.others;
         counts.other_inliers += inlier;
@@ -102,11 +158,15 @@ StayedMatches count_stayed(std::span<const Reference> references, std::span<cons
 }
 
 bool depth_contradicts(const StayedMatches& before) {
-  return before.stayed >= kLeastContradicted && 3 * before.stayed_inliers < 2 * before.stayed;
+  return before.stayed >= kLeastContradicted && 3 * before.other_depth > before.stayed;
 }
 
 bool may_be_misled(const StayedMatches& before) {
   return before.stayed_inliers > before.others && 2 * before.other_inliers < before.others;
+}
+
+bool contradicts_rest(const StayedMatches& before, double explained) {
+  return before.stayed_inliers > kTimesTheOthers * before.others && explained < kWorldAtRest;
 }
 
 std::size_t leave_stayed_out(const Reference& reference, ReferenceTracks& tracks) {

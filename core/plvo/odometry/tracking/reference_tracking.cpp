@@ -250,6 +250,7 @@ void ReferenceTracking::associate_by_descriptor(const Reference& reference, cons
   match_predicted_lines(camera.pinhole, features.current_exposure, reference.features->lines,
                         features.reference_lines, current.features.lines, T_predicted, gates, context.scratch,
                         tracks_[0].lines);
+  leave_carried_lines_out({&reference, 1}, current.features.lines, context.carried, {&tracks_[0], 1});
   tracks_[0].surfaces.clear();  // projecting them needs a good estimate of the motion
 }
 
@@ -283,6 +284,8 @@ void ReferenceTracking::associate_by_motion(std::span<const Reference> reference
     else
       tracks_[r].surfaces.clear();
   }
+  leave_carried_lines_out(references, current.features.lines, context.carried,
+                          std::span(tracks_).first(references.size()));
 }
 
 void ReferenceTracking::find(const Reference& reference, const CurrentFrame& current, const Se3& T_predicted,
@@ -303,9 +306,10 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
 }
 
 // If the points that stayed at their pixels may mislead the estimate, searches for a motion of the other
-// matches. If it is found among those points, they travel with the camera. If the other motion explains
-// clearly more than the estimate, it is taken. If both explain about as much, the estimate stays and its
-// covariance contains both.
+// matches. If it is found among those points, they are light that travels with the camera. If the other
+// motion explains clearly more than the estimate, it is taken. If neither explains enough, the points that
+// stayed are a part of the robot, and the frame has no motion. If both explain about as much, the estimate
+// stays and its covariance contains both.
 [[gnu::noinline]] void ReferenceTracking::look_beside_stayed(std::span<const Reference> references,
                                                              const CurrentFrame& current,
                                                              const Association& association,
@@ -313,7 +317,8 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   CarriedCells& carried = current.context.carried;
   const auto tracks = std::span(tracks_).first(references.size());
   const StayedMatches stayed = count_stayed(references, tracks, carried);
-  if (!may_be_misled(stayed)) return;
+  const bool rest_is_contradicted = contradicts_rest(stayed, tracked.motion.explained);
+  if (!may_be_misled(stayed) && !rest_is_contradicted) return;
   std::array<std::size_t, kMaxReferences> sizes{};
   for (std::size_t r = 0; r < references.size(); ++r) sizes[r] = leave_stayed_out(references[r], tracks[r]);
   const double evidence = tracked.motion.evidence;
@@ -322,13 +327,15 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   estimate(association, current, start, kFineSolve, tracked);
   const bool agree =
       tracked.ok() && agree_among_stayed(stayed, references, tracks, current.context.camera, carried);
-  const bool contradicted = !agree && depth_contradicts(stayed);
-  if (agree || contradicted) carried.mark_carried(stayed.cells);
-  if (contradicted) {
+  const bool explains_more = kComparableShare * tracked.motion.evidence > evidence;
+  const bool is_light = agree || depth_contradicts(stayed);
+  const bool is_robot = !is_light && rest_is_contradicted && !explains_more;
+  if (is_light || is_robot) carried.mark_carried(stayed.cells, is_light);
+  if (!agree && (is_light || is_robot)) {
     tracked.motion.status = StatusCode::kNoConsensus;
     return;
   }
-  if (agree || kComparableShare * tracked.motion.evidence > evidence) {
+  if (agree || explains_more) {
     tracked.motion.is_other = true;
     return;
   }
