@@ -69,8 +69,8 @@ Status render(const Rendered& rendered, Sequence& sequence) {
   SimulatorOptions options;
   options.frames = kRenderedFrames;
   if (Status status = parse_scene(rendered.scene, options.scene); !status.ok()) return status;
-  // Rendering takes most of the time, so the images have a quarter of the recorded ones' pixels. A small image
-  // of the hall shows too few features under the swinging lamp.
+  // Rendering takes most of the time, so the images have a quarter of the recorded ones' pixels. A small
+  // image of the hall shows too few features under the swinging lamp.
   if (options.scene != SceneName::kHall) {
     options.camera.width = 320;
     options.camera.height = 240;
