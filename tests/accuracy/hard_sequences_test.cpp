@@ -85,6 +85,18 @@ TEST(HardSequences, ACameraThatStandsStillAtADeskDoesNotFollowABoard) {
   EXPECT_LT(board.nees, kNeesBound);
 }
 
+// Here the board, which comes into view at once, explains more than the corridor does. The camera was at rest
+// before, so the board's motion would be a jolt.
+TEST(HardSequences, ACameraThatStandsStillInACorridorDoesNotFollowABoard) {
+  SimulatorOptions options = hard_options(60, {"board"});
+  options.seed = 8;
+  options.still = true;
+  const HardSequence board = track_hard(options);
+  EXPECT_EQ(board.tracked, 59);
+  EXPECT_LT(board.error_m, 0.005);
+  EXPECT_LT(board.nees, kNeesBound);
+}
+
 // Nine of ten points lie on the part of the robot and say that the camera stands still. What little is seen
 // of the bare hall says that it moves.
 TEST(HardSequences, APartOfTheRobotInABareHallIsNotTakenForRest) {

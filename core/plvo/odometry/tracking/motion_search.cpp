@@ -30,6 +30,13 @@ constexpr double kOtherMotion = 2.0 / 525;
 // Where motions are compared, the evidence of one that a prior contradicts counts this much. It may be
 // accepted nevertheless: the prior may be the one that is wrong.
 constexpr double kWorthOfContradicted = 0.25;
+// Inertia speaks against a motion that accelerates a camera at rest by more than this, about g: a robot does
+// not, and a hand seldom does. At 30 frames a second, an object that comes into view at 0.4 m/s seems to do
+// so. The evidence of such a motion counts this much. A camera is at rest if the prediction moves features by
+// less than kAtRest in the plane z = 1 (0.5 px of a Kinect).
+constexpr double kMostAcceleration_m_per_s2 = 10;
+constexpr double kWorthOfJolt = 0.5;
+constexpr double kAtRest = 0.5 / 525;
 // When tracking fails, features are searched this far from where the propagated prior puts them or, without
 // one, from their old positions. The velocity is not used.
 constexpr double kWideSearch_px = 120;
@@ -38,6 +45,9 @@ constexpr double kWideSearch_px = 120;
 struct Explained {
   double evidence = 0;
   double share = 0;
+  double worth = 1;  // of the evidence, against that of another motion
+
+  double weight() const { return worth * evidence; }
 };
 
 // Calls visit(extent) for the 3D points and lines of a reference.
@@ -129,7 +139,8 @@ class MotionSearch {
     if (found.share < kAcceptedShareByImage) return false;
     // An object may cover most of the image. The prediction, although it is near, may lead to the other
     // motion.
-    if (!are_apart && (tracked_.motion.explained < kWorldAtRest || tracked_.motion.contradicted)) {
+    if (!are_apart &&
+        (tracked_.motion.explained < kWorldAtRest || tracked_.motion.contradicted || found.worth < 1)) {
       explain(by_prediction, 1 / kComparableShare);
       take_best();
     }
@@ -162,7 +173,22 @@ class MotionSearch {
     Explained explained =
         explained_by(tracked_.motion.T_current_reference, references_, tracking_, current_.context.camera);
     if (tracked_.motion.contradicted) explained.evidence *= kWorthOfContradicted;
+    if (is_jolt()) explained.worth = kWorthOfJolt;
     return explained;
+  }
+
+  // Whether the motion sets a camera in motion that was at rest, and faster than inertia allows.
+  bool is_jolt() const {
+    const Se3& T_current_predicted = latest_.T_current_predicted;
+    if (!latest_.timing.last.known() ||
+        distance_between(T_current_predicted, Se3{}, *latest_.features) > kAtRest)
+      return false;
+    const Se3 T_current_latest =
+        tracked_.motion.T_current_reference * latest_.pose.T_reference_base.inverse();
+    const Vector3 apart = T_current_latest.inverse().t - T_current_predicted.inverse().t;
+    const double seconds = 1e-9 * static_cast<double>(latest_.timing.since_last_ns);
+    const double most_m = kMostAcceleration_m_per_s2 * seconds * seconds;
+    return apart.squaredNorm() > most_m * most_m;
   }
 
   bool refine(Se3 T_current_base) {
@@ -178,7 +204,7 @@ class MotionSearch {
   Explained explain(const Se3& start, double times = 1) {
     Explained explained;
     if (refine(start)) explained = explained_by_tracked();
-    last_is_best_ = explained.evidence > times * best_.explained.evidence;
+    last_is_best_ = explained.weight() > times * best_.explained.weight();
     if (last_is_best_) best_ = {start, tracked_.motion.T_current_reference, explained};
     return explained;
   }
@@ -204,7 +230,7 @@ class MotionSearch {
     rival = tracked_.motion.T_current_reference;
     const bool is_other = !image_leads || is_other_motion(start, rival);
     const double least = is_other ? kComparableShare : 1 / kComparableShare;
-    if (predicted.evidence > least * by_image.evidence) std::swap(start, rival);
+    if (predicted.weight() > least * by_image.weight()) std::swap(start, rival);
     return is_other && are_comparable(predicted.evidence, by_image.evidence);
   }
 
