@@ -30,10 +30,10 @@ constexpr double kOtherMotion = 2.0 / 525;
 // Where motions are compared, the evidence of one that a prior contradicts counts this much. It may be
 // accepted nevertheless: the prior may be the one that is wrong.
 constexpr double kWorthOfContradicted = 0.25;
-// Inertia speaks against a motion that accelerates a camera at rest by more than this, about g: a robot does
-// not, and a hand seldom does. At 30 frames a second, an object that comes into view at 0.4 m/s seems to do
-// so. The evidence of such a motion counts this much. A camera is at rest if the prediction moves features by
-// less than kAtRest in the plane z = 1 (0.5 px of a Kinect).
+// Inertia speaks against a motion that accelerates a camera at rest, or a robot against its wheels, by more
+// than this, about g: a robot does not, and a hand seldom does. At 30 frames a second, an object that comes
+// into view at 0.4 m/s seems to do so. The evidence of such a motion counts this much. A camera is at rest if
+// the prediction moves features by less than kAtRest in the plane z = 1 (0.5 px of a Kinect).
 constexpr double kMostAcceleration_m_per_s2 = 10;
 constexpr double kWorthOfJolt = 0.5;
 constexpr double kAtRest = 0.5 / 525;
@@ -177,11 +177,13 @@ class MotionSearch {
     return explained;
   }
 
-  // Whether the motion sets a camera in motion that was at rest, and faster than inertia allows.
+  // Whether the motion sets a camera in motion that was at rest, or differs from that of the wheels, by more
+  // than inertia allows.
   bool is_jolt() const {
     const Se3& T_current_predicted = latest_.T_current_predicted;
-    if (!latest_.timing.last.known() ||
-        distance_between(T_current_predicted, Se3{}, *latest_.features) > kAtRest)
+    const bool is_driven = current_.prior.translation.has_value();
+    if (!is_driven && (!latest_.timing.last.known() ||
+                       distance_between(T_current_predicted, Se3{}, *latest_.features) > kAtRest))
       return false;
     const Se3 T_current_latest =
         tracked_.motion.T_current_reference * latest_.pose.T_reference_base.inverse();
