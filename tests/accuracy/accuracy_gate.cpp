@@ -31,7 +31,7 @@ Status measure_rows(const Sequence& sequence, std::initializer_list<Kind> kinds,
     rows.push_back(summarise(sequence.name + '/' + kind.name, starts));
     const Row& row = rows.back();
     fmt::print(
-        "{:32} {:8.2f} mm/s (SD {:.2f}) {:7.3f} deg/s (SD {:.3f})  ln(NEES/6) {:5.2f} (SD {:.2f})  lost {}\n",
+        "{:40} {:8.2f} mm/s (SD {:.2f}) {:7.3f} deg/s (SD {:.3f})  ln(NEES/6) {:5.2f} (SD {:.2f})  lost {}\n",
         row.name, row.translation_mm_per_s.mean, row.translation_mm_per_s.deviation,
         row.rotation_deg_per_s.mean, row.rotation_deg_per_s.deviation, row.log_nees.mean,
         row.log_nees.deviation, row.lost);
@@ -41,10 +41,17 @@ Status measure_rows(const Sequence& sequence, std::initializer_list<Kind> kinds,
 }
 
 Status measure_recorded(const std::filesystem::path& data, std::vector<Row>& rows) {
-  for (const Recorded& recorded : recorded_sequences()) {
+  for (Recorded recorded : recorded_sequences()) {
     Sequence sequence;
     if (Status status = load(data, recorded, sequence); !status.ok()) return status;
     if (Status status = measure_rows(sequence, {kBoth, kPoints, kLines}, rows); !status.ok()) return status;
+    if (*recorded.camera_model == '\0') continue;
+    // As a user tracks it who does not name the camera: without a model of its shutter and stamps, residuals
+    // are larger. A rule that relies on small ones fails here first.
+    recorded.camera_model = "";
+    if (Status status = load(data, recorded, sequence); !status.ok()) return status;
+    sequence.name += "_unnamed_camera";
+    if (Status status = measure_rows(sequence, {kBoth}, rows); !status.ok()) return status;
   }
   return {};
 }

@@ -32,7 +32,7 @@ struct Recorded {
 const std::vector<Recorded>& recorded_sequences();
 Status load(const std::filesystem::path& data, const Recorded& recorded, Sequence& sequence);
 
-// The simulator's five scenes under both lights. Its default hand and sensor, 640x480.
+// The simulator's five scenes under both lights, with its default hand and sensor.
 struct Rendered {
   std::string scene, light;
 };
