@@ -69,16 +69,21 @@ inline TrackedSequence track_sequence(
   return tracked;
 }
 
-// At 320×240; no frame may be lost.
-inline TrackedSequence track_sequence(
-    SceneName scene, int frames, const Config& config, double stamp_sigma_s = 0,
-    const std::function<std::int64_t()>& stamp_error_ns = [] { return 0; }) {
+inline SimulatorOptions qvga_options(SceneName scene, int frames) {
   SimulatorOptions options = small_options(scene);
   options.camera.width = 320;
   options.camera.height = 240;
   options.camera.pinhole = {262.5, 262.5, 159.5, 119.5};
   options.frames = frames;
-  TrackedSequence tracked = track_sequence(options, kTestLimits, config, stamp_sigma_s, stamp_error_ns);
+  return options;
+}
+
+// At 320×240; no frame may be lost.
+inline TrackedSequence track_sequence(
+    SceneName scene, int frames, const Config& config, double stamp_sigma_s = 0,
+    const std::function<std::int64_t()>& stamp_error_ns = [] { return 0; }) {
+  TrackedSequence tracked =
+      track_sequence(qvga_options(scene, frames), kTestLimits, config, stamp_sigma_s, stamp_error_ns);
   for (const TrackResult& result : tracked.results)
     EXPECT_NE(result.state, TrackState::kLost) << result.status.message();
   return tracked;

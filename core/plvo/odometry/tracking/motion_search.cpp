@@ -45,7 +45,9 @@ constexpr double kWideSearch_px = 120;
 struct Explained {
   double evidence = 0;
   double share = 0;
-  double worth = 1;  // of the evidence, against that of another motion
+  // Of the evidence, where starts are compared. Whether the covariance contains a rival does not depend on
+  // it.
+  double worth = 1;
 
   double weight() const { return worth * evidence; }
 };
@@ -113,6 +115,13 @@ bool is_findable(const Reference& reference) {
   return points.described || points.keypoints.empty();
 }
 
+// Whether the velocity is so certain that inertia counts: wheels measure it, or the camera was at rest.
+bool has_certain_velocity(const CurrentFrame& current, const Reference& latest) {
+  if (current.prior.translation) return true;
+  return latest.timing.last.known() &&
+         !(distance_between(latest.T_current_predicted, Se3{}, *latest.features) > kAtRest);
+}
+
 class MotionSearch {
  public:
   // All must outlive this object. tracked: what the last estimate found.
@@ -121,7 +130,8 @@ class MotionSearch {
         tracking_(tracking),
         tracked_(tracked),
         references_(current.predicted.references),
-        latest_(references_[latest_of(references_)]) {}
+        latest_(references_[latest_of(references_)]),
+        inertia_counts_(has_certain_velocity(current, latest_)) {}
 
   // Tries the motion that aligns the images. Returns whether it is accepted.
   bool from_image() {
@@ -177,17 +187,12 @@ class MotionSearch {
     return explained;
   }
 
-  // Whether the motion sets a camera in motion that was at rest, or differs from that of the wheels, by more
-  // than inertia allows.
+  // Whether the position differs from the predicted one by more than inertia allows.
   bool is_jolt() const {
-    const Se3& T_current_predicted = latest_.T_current_predicted;
-    const bool is_driven = current_.prior.translation.has_value();
-    if (!is_driven && (!latest_.timing.last.known() ||
-                       distance_between(T_current_predicted, Se3{}, *latest_.features) > kAtRest))
-      return false;
+    if (!inertia_counts_) return false;
     const Se3 T_current_latest =
         tracked_.motion.T_current_reference * latest_.pose.T_reference_base.inverse();
-    const Vector3 apart = T_current_latest.inverse().t - T_current_predicted.inverse().t;
+    const Vector3 apart = T_current_latest.inverse().t - latest_.T_current_predicted.inverse().t;
     const double seconds = 1e-9 * static_cast<double>(latest_.timing.since_last_ns);
     const double most_m = kMostAcceleration_m_per_s2 * seconds * seconds;
     return apart.squaredNorm() > most_m * most_m;
@@ -253,6 +258,7 @@ class MotionSearch {
   TrackedMotion& tracked_;
   std::span<const Reference> references_;
   const Reference& latest_;
+  const bool inertia_counts_;
   // The motion that explains most so far, the start that led to it, and what it explains.
   struct {
     Se3 start, motion;
