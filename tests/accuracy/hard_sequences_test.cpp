@@ -92,6 +92,20 @@ TEST(HardSequences, ACameraThatStandsStillInACorridorDoesNotFollowABoard) {
   expect_rest_before_a_board(SceneName::kCorridor, 8, 0.005);
 }
 
+// Lines along which the board moves agree with the motion of the room (neighbourhoods.hpp).
+TEST(HardSequences, ARobotThatMovesAtADeskDoesNotFollowABoard) {
+  for (const std::uint64_t seed : {6, 9}) {
+    SimulatorOptions options = hard_options(60, {"board"});
+    options.scene = SceneName::kDesk;
+    options.seed = seed;
+    options.robot = true;
+    const HardSequence board = track_hard(options);
+    std::printf("seed %d: %.1f mm\n", static_cast<int>(seed), 1e3 * board.error_m);
+    EXPECT_EQ(board.tracked, 59);
+    EXPECT_LT(board.error_m, 0.01);
+  }
+}
+
 // Nine of ten points lie on the part of the robot and say that the camera stands still. What little is seen
 // of the bare hall says that it moves.
 TEST(HardSequences, APartOfTheRobotInABareHallIsNotTakenForRest) {

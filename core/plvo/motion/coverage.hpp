@@ -2,8 +2,9 @@
 // The evidence of features: the size of the part of the scene that they represent. A scene may contain more
 // than one motion, and the camera's is that of the larger part of the scene, not that of the most features:
 // an object or a part of the robot may have most of the texture, but it is smaller than the room. The image
-// is divided into square cells. The evidence of a cell is its width at the depth of its features, and they
-// share it. A line has the evidence of all cells that it spans. A landmark with a bad record has no evidence.
+// is divided into cells (image_cells.hpp). The evidence of a cell is its width at the depth of its features,
+// and they share it. A line has the evidence of all cells that it spans. A landmark with a bad record has no
+// evidence.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 
 #include "plvo/camera/observation.hpp"
 #include "plvo/math/trigonometry.hpp"
+#include "plvo/motion/image_cells.hpp"
 
 namespace plvo {
 
@@ -49,7 +51,7 @@ class Coverage {
   void clear() { crowd_.fill(0); }
   void count(const Extent& extent) {
     if (!extent.trusted) return;
-    std::uint8_t& features = crowd_[cell_of(extent.middle)];
+    std::uint8_t& features = crowd_[ImageCells::at(extent.middle)];
     if (features < 255) ++features;
   }
   // Evidence of a feature: its depth in m, to which the width of its cell is proportional, times the cells of
@@ -57,27 +59,15 @@ class Coverage {
   // itself.
   double evidence(const Extent& extent) const {
     if (!extent.trusted) return 0;
-    const double cells = std::min(1 + extent.length / kCellSide, kMostCellsOfALine);
-    return extent.middle.z() * cells / std::max(crowd_[cell_of(extent.middle)], std::uint8_t{1});
+    const double cells = std::min(1 + extent.length / ImageCells::kWidth, kMostCellsOfALine);
+    return extent.middle.z() * cells / std::max(crowd_[ImageCells::at(extent.middle)], std::uint8_t{1});
   }
 
  private:
-  // In the plane z = 1: 40 pixels of a Kinect. The grid is wider than the image of any lens but a fisheye;
-  // features beyond it count as in its border.
-  static constexpr double kCellSide = 0.075;
-  static constexpr int kCells = 32;
   // A line that spans more cells counts as this many.
   static constexpr double kMostCellsOfALine = 4;
 
-  static std::size_t cell_of(const Vector3& p) {
-    const auto along = [](double x) {
-      return static_cast<std::size_t>(std::clamp(x / kCellSide + kCells / 2, 0.0, kCells - 1.0));
-    };
-    const double inverse = 1 / p.z();
-    return along(p.y() * inverse) * kCells + along(p.x() * inverse);
-  }
-
-  std::array<std::uint8_t, kCells * kCells> crowd_;
+  std::array<std::uint8_t, ImageCells::kCount> crowd_;
 };
 
 }  // namespace plvo

@@ -140,16 +140,21 @@ class ConsensusSolver {
     return StatusCode::kOk;
   }
 
+  void judge(double scale) {
+    ransac_.judge(T_, scale);
+    ransac_.leave_isolated_out();
+  }
+
   // Moves T_ to the motion of its consensus. On return the inliers at the final thresholds are flagged.
   StatusCode approach(double scale) {
     for (int round = 0; round < kMaxWideRounds; ++round) {
-      ransac_.judge(T_, scale);
+      judge(scale);
       const StatusCode status = refine(LmOptions::one_step());
       if (status != StatusCode::kOk) return status;
       if (solving_.solver.next_decrease() <= 0.5 * kFarSigmas * kFarSigmas) break;
       scale = kWiderThanRefined;
     }
-    ransac_.judge(T_, 1);
+    judge(1);
     return StatusCode::kOk;
   }
 

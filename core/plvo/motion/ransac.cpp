@@ -4,6 +4,7 @@
 #include "plvo/math/chi_square.hpp"
 #include "plvo/motion/minimal_set.hpp"
 #include "plvo/motion/motion_problem.hpp"
+#include "plvo/motion/neighbourhoods.hpp"
 
 namespace plvo {
 namespace {
@@ -47,7 +48,8 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     const ConstraintSet& set = *sets_[s];
     threshold_[s] = chi_square_quantile(set.dof(), kInlierProbability);
     for (std::size_t i = 0; i < set.size() && n < scratch.size(); ++i)
-      if (set.usable(i)) scratch[n++] = {static_cast<std::uint8_t>(s), static_cast<std::uint16_t>(i), 0};
+      if (set.usable(i))
+        scratch[n++] = {static_cast<std::uint16_t>(s & 63), 0, static_cast<std::uint16_t>(i), 0};
   }
   candidates_ = scratch.first(n);
   weigh();
@@ -63,7 +65,10 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
           visit(candidate, set.extent(candidate.index));
     };
     coverage.clear();
-    each([&](const RansacCandidate&, const Extent& extent) { coverage.count(extent); });
+    each([&](RansacCandidate& candidate, const Extent& extent) {
+      candidate.cell = static_cast<std::uint16_t>(ImageCells::at(extent.middle) & (ImageCells::kCount - 1));
+      coverage.count(extent);
+    });
     each([&](RansacCandidate& candidate, const Extent& extent) {
       candidate.evidence = static_cast<float>(coverage.evidence(extent));
       evidence_ += static_cast<double>(candidate.evidence);
@@ -282,6 +287,24 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
     set.inliers()[candidate.index] = flag;
     inliers_ += flag;
   }
+}
+
+// Not inlined: the counts would otherwise stay on the stack while the motion is solved for.
+[[gnu::noinline]] void Ransac::leave_isolated_out() {
+  Neighbourhoods around;
+  const auto is_inlier = [&](const RansacCandidate& candidate) {
+    return sets_[candidate.set]->inliers()[candidate.index] != 0;
+  };
+  for (const RansacCandidate& candidate : candidates_) around.count(candidate.cell, is_inlier(candidate));
+  const auto is_isolated = [&](const RansacCandidate& candidate) {
+    return is_inlier(candidate) && around.is_isolated(candidate.cell);
+  };
+  int left = inliers_;
+  for (const RansacCandidate& candidate : candidates_) left -= is_isolated(candidate) ? 1 : 0;
+  if (left == inliers_ || 2 * left < inliers_ || left < config_.min_inliers) return;
+  for (const RansacCandidate& candidate : candidates_)
+    if (is_isolated(candidate)) sets_[candidate.set]->inliers()[candidate.index] = 0;
+  inliers_ = left;
 }
 
 int Ransac::iterations_needed() const {

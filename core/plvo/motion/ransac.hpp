@@ -35,10 +35,11 @@ struct RansacSummary {
 
 // A match that may be an inlier.
 struct RansacCandidate {
-  std::uint8_t set = 0;
+  std::uint16_t set : 6, cell : 10;  // its constraint set; its cell of the image
   std::uint16_t index = 0;
   float evidence = 0;
 };
+static_assert(ImageCells::kCount == 1 << 10);
 
 constexpr std::span<RansacCandidate> take_ransac_scratch(Arena& memory, std::size_t max_matches) {
   return memory.take<RansacCandidate>("motion: candidates", max_matches);
@@ -65,6 +66,8 @@ class Ransac {
 
   // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`.
   void judge(const Se3& T, double scale) { judge(T, scale, 1); }
+  // Clears the flags of the inliers that are isolated among outliers (neighbourhoods.hpp), unless most are.
+  void leave_isolated_out();
   int inliers() const { return inliers_; }
   // Share of the evidence of all usable matches that the flagged inliers have.
   double covered() const;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The matches around a match. Neighbouring features mostly lie on one object and move together. An inlier
+// among outliers therefore belongs to an object that moves by itself: it agrees with the camera's motion by
+// chance, as a line does along which the object moves. A few near ones of this kind can outweigh the room.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "plvo/motion/image_cells.hpp"
+
+namespace plvo {
+
+// First count all usable matches, then ask for each inlier. Takes 2 kB.
+class Neighbourhoods {
+ public:
+  Neighbourhoods() { counts_.fill({}); }
+  void count(std::size_t cell, bool is_inlier) {
+    std::uint8_t& matches = is_inlier ? counts_[cell].inliers : counts_[cell].outliers;
+    if (matches < 255) ++matches;
+    ++(is_inlier ? inliers_ : outliers_);
+  }
+  // Whether an inlier in this cell, which was counted, is isolated: its cell and the eight around it hold
+  // kLeastOutliers or more, and more than kTimesTheInliers times as many as other inliers. Where outliers are
+  // the majority of all matches, both numbers grow with outliers per inlier: wrong matches lie everywhere.
+  bool is_isolated(std::size_t cell) const {
+    const int x = static_cast<int>(cell % ImageCells::kSide);
+    const int y = static_cast<int>(cell / ImageCells::kSide);
+    int inliers = -1, outliers = 0;
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, ImageCells::kSide - 1); ++v)
+      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, ImageCells::kSide - 1); ++u) {
+        const Counts& counts = counts_[static_cast<std::size_t>(v * ImageCells::kSide + u)];
+        inliers += counts.inliers;
+        outliers += counts.outliers;
+      }
+    const int majority = std::max(inliers_, outliers_);
+    return outliers * inliers_ >= kLeastOutliers * majority &&
+           outliers * inliers_ > kTimesTheInliers * inliers * majority;
+  }
+
+ private:
+  struct Counts {
+    std::uint8_t inliers = 0, outliers = 0;
+  };
+
+  static constexpr int kLeastOutliers = 4;
+  static constexpr int kTimesTheInliers = 2;
+
+  std::array<Counts, ImageCells::kCount> counts_;
+  int inliers_ = 0, outliers_ = 0;
+};
+
+}  // namespace plvo
