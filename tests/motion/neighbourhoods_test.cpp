@@ -94,7 +94,9 @@ TEST(Neighbourhoods, LinesThatAMovingBoardSlidesAlongAreNoInliers) {
     for (int i = 0; has_points && i < 40; ++i)
       pair.add_point(gaussian, {gaussian.uniform(-0.32, -0.12), gaussian.uniform(-0.12, 0.12), 0.8});
     pair.truth = T_room;
-    const MotionEstimate estimate = bench.estimate(pair, {}, 1, nullptr);
+    MotionStart start(nullptr);
+    start.registered = true;
+    const MotionEstimate estimate = bench.estimate(pair, {}, 1, start);
     ASSERT_EQ(estimate.status, StatusCode::kOk);
     EXPECT_LT(test::nees(estimate.T_current_reference, T_room, test::inverse(estimate.C_H)), 30);
     EXPECT_GT(estimate.inliers[0], 180);

@@ -142,7 +142,7 @@ class ConsensusSolver {
 
   void judge(double scale) {
     ransac_.judge(T_, scale);
-    ransac_.leave_isolated_out();
+    if (start_.registered) ransac_.leave_isolated_out();
   }
 
   // Moves T_ to the motion of its consensus. On return the inliers at the final thresholds are flagged.

@@ -68,6 +68,9 @@ struct MotionStart {
   NuisanceParameters shared;
   bool estimated;
   bool search_beside = true;  // for another motion, if this one explains too little
+  // The matches were registered near the prediction. Outliers are then mostly parts of an object that moves,
+  // and inliers among them are left out (neighbourhoods.hpp). Otherwise outliers are mostly wrong matches.
+  bool registered = false;
 };
 
 // Fills `estimate`. sets: at most kMaxConstraintSets, in a fixed order. others: terms that RANSAC does not

@@ -356,6 +356,7 @@ void ReferenceTracking::glance(std::span<const Reference> references, const Curr
   associate_by_motion(references, current, T_current_base, association, false);
   MotionStart start(&T_current_base, {}, true);
   start.search_beside = false;
+  start.registered = true;
   estimate(association, current, start, kRoughSolve, tracked);
 }
 
@@ -369,6 +370,7 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   const NuisanceParameters shared =
       nuisance_parameters(context.config.noise, association.features[latest].current_exposure, context.noise);
   MotionStart start{&T_current_base, shared, true};
+  start.registered = true;
   estimate(association, current, start, kFineSolve, tracked);
   if (tracked.ok()) look_beside_stayed(references, current, association, start, tracked);
   if (tracked.ok())
