@@ -36,7 +36,7 @@ save() {
   pictures=()
 }
 
-show "--with board" 24 40 50; save moving_board
+show "--with board" 24 44 73; save moving_board
 show "--still --with person" 40; show "--with person" 40; show "--with person-ahead" 50; save moving_person
 show "--with bumper" 5 20; show "--with clock" 40; save moving_bumper
 show "--with dots" 6 7 40; save moving_dots
