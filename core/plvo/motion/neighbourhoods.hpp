@@ -45,8 +45,8 @@ class Neighbourhoods {
     std::uint8_t inliers = 0, outliers = 0;
   };
 
-  // Single outliers are wrong matches. In a world at rest about an eighth of the matches are outliers, so this
-  // many are seldom together.
+  // Single outliers are wrong matches. In a world at rest about an eighth of the matches are outliers, so
+  // this many are seldom together.
   static constexpr int kLeastOutliers = 4;
   static constexpr int kTimesTheInliers = 2;
 
