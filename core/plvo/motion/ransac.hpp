@@ -35,7 +35,8 @@ struct RansacSummary {
 
 // A match that may be an inlier.
 struct RansacCandidate {
-  std::uint16_t set : 6, cell : 10;  // its constraint set; its cell of the image
+  std::uint16_t set : 6 = 0;    // its constraint set
+  std::uint16_t cell : 10 = 0;  // its cell of the image
   std::uint16_t index = 0;
   float evidence = 0;
 };
