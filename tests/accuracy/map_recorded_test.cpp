@@ -26,7 +26,7 @@ class SeenTwice {
         sequence.frames.back().frame().stamp_ns - sequence.frames.front().frame().stamp_ns + kPause_ns;
     for (const std::int64_t later_ns : {std::int64_t{0}, again_ns_})
       for (const StampedPose& pose : sequence.truth.poses) {
-        // Of a truth that is longer than the recording, the rest would lie in the other half.
+        // If the truth is longer than the recording, its rest would lie in the other half.
         const bool is_of_the_frames =
             pose.stamp_ns > sequence.frames.front().frame().stamp_ns - kPause_ns / 4 &&
             pose.stamp_ns < sequence.frames.back().frame().stamp_ns + kPause_ns / 4;

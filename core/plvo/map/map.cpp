@@ -146,7 +146,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                                     view.T_world_camera, result.pose_covariance);
   }
   if (!is_judged_) judge(out);
-  // To be read before a keyframe is removed, which may be the latest one.
+  // Read before a keyframe is removed, because that may be the latest one.
   const bool begins_part = memory_.graph.size() == 0 || !follows_camera_;
   const std::uint32_t part =
       begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;
@@ -323,8 +323,8 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   const Se3& old_b = memory_.graph.node(b.old_slot).T_map_keyframe;
   const Se3 by_a = old_a * a.loop.T_old_new * new_a.T_map_keyframe.inverse() * new_b.T_map_keyframe;
   const Se3 by_b = old_b * b.loop.T_old_new;
-  // The covariances of both loops and of the map between the old views; then that of the motion between the
-  // new views, rotated by the loop.
+  // The sum of the covariances of both loops, of the map between the old views and, rotated by the
+  // loop, of the motion between the new views.
   Matrix6 covariance = about_position(between(a.old_slot, b.old_slot, by_b.t) +
                                           motion_in_map(old_a, a.loop.T_old_new, a.loop.covariance) +
                                           motion_in_map(old_b, b.loop.T_old_new, b.loop.covariance),

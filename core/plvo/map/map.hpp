@@ -117,7 +117,7 @@ class Map {
 
   const PoseGraph& graph() const { return memory_.graph; }
   MapFeatures features(std::size_t slot) const { return memory_.features.at(slot); }
-  // As MapResult::located of the latest frame, but includes what settle() found since.
+  // MapResult::located of the latest frame, updated by what settle() has found since.
   bool located() const { return follows_camera_ && memory_.graph.is_placed(memory_.graph.last()); }
   // The pose of a keyframe as it is known now; nothing if it was removed, or if its place in the map is not
   // known.
@@ -177,7 +177,7 @@ class Map {
   Matrix6 world_covariance_ = Matrix6::Zero();
   std::array<PlaceCandidate, kCandidates> candidates_;  // of the latest keyframe, the next to compare last
   std::size_t candidate_count_ = 0;
-  bool is_judged_ = true;                           // what the comparisons of the latest keyframe gave
+  bool is_judged_ = true;                           // the latest keyframe's comparisons were judged
   std::array<Hypothesis, kHypotheses> hypotheses_;  // the latest, oldest first
   std::size_t hypothesis_count_ = 0;
   Counts counts_;

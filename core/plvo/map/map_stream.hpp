@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams for saving and loading a map. The caller takes or gives the bytes in blocks, with a file, a flash
-// memory or a link. Numbers are little-endian on every processor; all bytes enter a checksum.
+// Streams for saving and loading a map. The bytes pass in blocks through functions of the caller,
+// which write them to a file, a flash memory or a link, or read them from there. Numbers are
+// little-endian on every processor; all bytes enter a checksum.
 #pragma once
 
 #include <algorithm>

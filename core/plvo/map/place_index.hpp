@@ -59,8 +59,8 @@ class PlaceIndex {
   std::uint8_t tables_of(std::span<const Descriptor> stored, std::size_t entry);
   void add_to_tables(std::span<const Descriptor> stored, std::size_t entry, std::uint8_t tables);
 
-  // Writes the keyframes with the highest scores, the best first, and among equal ones the lower slot. Slots
-  // with a flag in `excluded` get no vote.
+  // Writes the keyframes with the highest scores, the best first. Of equal scores the lower slot
+  // comes first. Slots with a flag in `excluded` get no vote.
   void query(std::span<const Descriptor> stored, std::span<const Descriptor> query,
              std::span<const std::uint8_t> excluded, FixedVector<PlaceCandidate>& best);
 

@@ -93,9 +93,10 @@ class PoseGraph {
   void join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
   // The sum of the variances of a node's position and orientation (m² + rad²).
   double variance_of_place(std::uint16_t slot) const;
-  // If the place of the later node is more uncertain than `unknown` (m² + rad²), moves it to where T_a_b puts
-  // it, and with it the nodes behind it and those before it whose place is unknown, too, from the least
-  // certain motion among them on: as a whole and at once, as the solution would need many steps for that.
+  // Does nothing unless the place of the later node is more uncertain than `unknown` (m² + rad²).
+  // Otherwise it finds the least certain motion among the uncertain nodes that end with the later
+  // node. All nodes from that motion to the end of the chain move as a whole, so that the later
+  // node is where T_a_b puts it. The solution would need many steps for this.
   void move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance,
                     double unknown);
   // Adds a measured motion. If there is no room, it replaces the most uncertain loop.

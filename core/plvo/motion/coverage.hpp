@@ -19,7 +19,7 @@
 namespace plvo {
 
 // In a world at rest, the camera's motion mostly explains more than this share of the evidence of all
-// matches: in four frames of five of recordings, and in each frame of three rendered rooms.
+// matches: in four of five frames of the recordings, and in every frame of three rendered rooms.
 inline constexpr double kWorldAtRest = 0.75;
 
 // Evidence does not decide which of two motions is the camera's if one motion explains at least this share of
@@ -64,7 +64,7 @@ class Coverage {
   }
 
  private:
-  // A line that spans more cells counts as this many.
+  // A line counts as at most this many cells.
   static constexpr double kMostCellsOfALine = 4;
 
   std::array<std::uint8_t, ImageCells::kCount> crowd_;

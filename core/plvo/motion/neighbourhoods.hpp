@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The matches around a match. Neighbouring features mostly lie on one object and move together. An inlier
-// among outliers therefore belongs to an object that moves by itself: it agrees with the camera's motion by
-// chance, as a line does along which the object moves. A few near ones of this kind can outweigh the room.
+// The matches around a match. Neighbouring features mostly lie on one object and move together. An
+// inlier among outliers therefore mostly belongs to an object that moves by itself. It agrees with
+// the camera's motion by chance: a line, for example, if the object moves along it. A few such
+// inliers near the camera can outweigh the room.
 #pragma once
 
 #include <algorithm>

@@ -81,7 +81,7 @@ class Ransac {
   bool consensus_fixes_motion(std::uint64_t seed);
 
  private:
-  // What an inlier adds to the score is in proportion to this.
+  // The quantity to which the score of an inlier is proportional.
   enum class Gain : std::uint8_t {
     kMatch,     // run(): every match counts the same
     kEvidence,  // run_beside(): by its evidence, unless a term contradicts the motion

@@ -47,7 +47,8 @@ Status BaseMotion::add(const WheelStep& step, double error_s) {
   if (!(error_s >= 0 && error_s <= 1e6)) return refuse_wheels("error_s must lie between 0 and 1e6 s");
   const Vector3 way = step.seconds * step.twist.head<3>(), turn = step.seconds * step.twist.tail<3>();
   const Se3 T{rotation_exp(turn), mean_exponential<3>(skew(turn)) * way};
-  // J_r: an error of the twist to one in the axes of the base after the step; T.R: to those before it.
+  // J_r maps an error of the twist to an error in the axes of the base after the step. T.R rotates
+  // it into the axes before the step.
   const Matrix6 J_r = mean_exponential<6>(twist_matrix(-skew(turn), -skew(way)));
   const Matrix6 J = twist_matrix(T.R, Matrix3::Zero()).lazyProduct(J_r);
   const Matrix6 C_per_s2 = J.lazyProduct(step.covariance).eval().lazyProduct(J.transpose());

@@ -39,8 +39,9 @@ class BaseMotion {
   // longer than 0 s or turns by more than π.
   Status add(const WheelStep& step, double error_s);
 
-  // Returns kInvalidArgument, and an empty prior, before the first step and for a T_base_camera that is not a
-  // rotation; and as MotionPrior::validate(), which refuses a covariance that is not positive definite.
+  // Returns kInvalidArgument and an empty prior before the first step, and if T_base_camera is not
+  // a finite rigid motion. The same holds if MotionPrior::validate() refuses the prior, for example
+  // because its covariance is not positive definite.
   Status prior(const Se3& T_base_camera, MotionPrior& prior) const;
 
  private:

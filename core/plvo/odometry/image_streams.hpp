@@ -34,14 +34,15 @@ class ColourStream {
 // for longer while the camera moves, the stream has stopped: the frames are lost until a new image comes.
 class DepthStream {
  public:
-  // As above. An image with hardly any reading is never called a repeated one.
+  // As ColourStream::look(). An image with hardly any readings never counts as repeated.
   void look(const RgbdFrame& frame, GrayView mask = {});
   void forget() { *this = DepthStream(); }
   bool is_repeated() const { return is_repeated_; }
   // Stamp of the image when it came for the first time.
   std::int64_t first_stamp_ns() const { return first_depth_stamp_ns_; }
 
-  // Whether the image is too old, with this motion since it came for the first time.
+  // Whether the image is too old for a camera that has moved by this much since the image came for
+  // the first time.
   bool is_too_old_for(const Se3& T_current_first) const;
   // Notes that the stream has stopped; this holds until a new image comes.
   void stop() { has_stopped_ = true; }

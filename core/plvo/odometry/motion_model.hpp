@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The motion model of the camera: its velocity is a random walk, so the last one is the best guess for the
-// next; and process noise where the motion is not observed. The state of a frame is its pose and its
-// velocity. It predicts the next motion, completes the priors, gives each exposure its velocity, and says how
-// fast a pose becomes uncertain.
+// The motion model of the camera. Its velocity is a random walk, so the last velocity is the best
+// guess for the next. Where the motion is not observed, there is process noise. The state of a
+// frame is its pose and its velocity. It predicts the next motion, completes the priors, gives each
+// exposure its velocity, and says how fast a pose becomes uncertain.
 #pragma once
 
 #include <algorithm>
@@ -19,9 +19,10 @@ struct Velocity {
   std::int64_t measured_ns = 0;  // 0: the velocity is not known
 
   bool known() const { return measured_ns > 0; }
-  // Seconds of motion at this velocity, elapsed_ns after it was measured. The camera is taken to keep it
-  // three times as long as it was measured, and for 300 ms at least. Then it is taken to stand still: the
-  // longer the gap, the less the old velocity says. The process noise covers the error.
+  // Seconds for which the camera is assumed to keep this velocity, of the elapsed_ns since the
+  // measurement. It is assumed to keep it for three times the interval over which it was measured,
+  // but for 300 ms at least, and then to stand still: the longer the gap, the less the old velocity
+  // says. The process noise covers the error.
   double moving_s(std::int64_t elapsed_ns) const {
     constexpr double kIntervals = 3, kLeast_s = 0.3;
     if (!known()) return 0;

@@ -132,7 +132,7 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
       predict(window_, camera_, input.stamp_ns, propagate(input.stamp_ns, prior),
               depth_after_colour_s(camera_, depth_.first_stamp_ns(), input.stamp_ns), references);
 
-  // Associate and estimate: for one first motion after the other, until one is accepted.
+  // Associate and estimate: try one first motion after the other, until one is accepted.
   const DepthSampler depth = extraction.depth_sampler(input, config_->depth_noise);
   const CurrentFrame frame{context, extraction, depth, predicted, window_.begin_frame(), prior};
   frame.features.clear(budget_.capacity());
@@ -144,7 +144,7 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   // Decide: what the frame is, and which references stay. Update: the window, the world, the learnt noise.
   TrackResult result = conclude(frame, tracked);
 
-  // Relocalise: where the view of an earlier keyframe is back.
+  // Relocalise: correct all poses if the view of an earlier keyframe is back.
   if (result.state == TrackState::kTracking && !result.relocalised) relocalise(frame, tracked, result);
   result.ransac_iterations = tracked.ransac_iterations;
   result.lm_iterations = tracked.lm_iterations;
@@ -153,7 +153,7 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   return result;
 }
 
-// Not inlined, as the steps that it calls: what a step needs on the stack is there during it alone.
+// Not inlined, like the steps that it calls: each step then occupies the stack only while it runs.
 [[gnu::noinline]] TrackResult Odometry::conclude(const CurrentFrame& frame, const TrackedMotion& tracked) {
   const Decision decision = decide(frame, tracked);
   return update(frame, decision, tracked);

@@ -94,13 +94,14 @@ class Odometry {
   // Tracks with measurements of other sensors. Their motion guides the search for features and joins the
   // estimate as one more constraint. Directions that vision leaves open then have a large covariance but
   // cause no loss. A frame without usable features is kPredicted if every frame since the last good one came
-  // with a rotation or a translation. Gravity corrects roll and pitch of the pose. An empty prior is as none;
-  // one that does not pass MotionPrior::validate() is refused with the frame.
+  // with a rotation or a translation. Gravity corrects roll and pitch of the pose. An empty prior
+  // has no effect. If a prior does not pass MotionPrior::validate(), it is refused together with
+  // its frame.
   TrackResult track(const RgbdFrame& input, const MotionPrior& prior);
   // Tracks with the samples of a gyro and an accelerometer that wait in `imu`, and corrects the gyro's offset
   // by the estimated rotation. Every frame must be tracked by this function: `imu` must give the samples of
-  // all intervals. A refused frame uses up no samples. wheels: the motion by wheels; its rotation is used
-  // where the gyro measures none, and its gravity never.
+  // all intervals. A refused frame uses up no samples. wheels: the motion that wheels measured. Its
+  // rotation is used only if the gyro measured none. Its gravity is never used.
   TrackResult track(const RgbdFrame& input, ImuIntegrator& imu, const MotionPrior& wheels = MotionPrior());
 
   // Restores the state after init: the next usable frame defines a world of the next number, and the learnt
@@ -129,7 +130,8 @@ class Odometry {
   KeyframeView keyframe() const;
 
  private:
-  // The steps of a frame, in their order. Before update() none changes a pose, a reference or the world.
+  // The steps of a frame, in their order. No step before update() changes a pose, a reference or
+  // the world.
   Status check(const RgbdFrame& input, const MotionPrior& prior) const;
   TrackResult process(const RgbdFrame& input, const MotionPrior& prior);
   PropagatedPrior propagate(std::int64_t stamp_ns, const MotionPrior& prior) const;
@@ -144,7 +146,8 @@ class Odometry {
   void lose(const CurrentFrame& frame, const Decision& decision, TrackResult& result);
   void note_pose(TrackResult& result);
   void relocalise(const CurrentFrame& frame, TrackedMotion& tracked, TrackResult& result);
-  // Frames without a search, and results without a pose.
+  // For frames whose motion is not searched: a refused one, and one that repeats an image.
+  // forget_world() discards all poses.
   TrackResult refuse(const RgbdFrame& input, const Status& refusal) const;
   TrackResult pass_over(const RgbdFrame& input, const MotionPrior& prior);
   void forget_world();

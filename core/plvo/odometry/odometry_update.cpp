@@ -125,8 +125,8 @@ void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool is
   note_pose(result);
 }
 
-// Makes the current frame the keyframe and the last good frame, without a motion before it. A frame that
-// cannot be that is left out, and the odometry waits for the next one.
+// Makes the current frame the keyframe and the last good frame, without a motion before it. If the
+// frame cannot start a trajectory, it is left out, and the odometry waits for the next one.
 [[gnu::noinline]] void Odometry::start(const CurrentFrame& frame, const Decision& decision,
                                        TrackResult& result) {
   if (decision.new_world) forget_world();
@@ -164,8 +164,9 @@ void Odometry::note_pose(TrackResult& result) {
   if (!window_.T_world_depth() || !depth_.is_repeated()) window_.note_depth();
 }
 
-// The pose is the last good one, or that by the priors. A usable frame is kept for the next one; its pose is
-// then the last good one with the covariance of the unobserved motion since then, or that by the priors.
+// Reports the last good pose or, if the priors give one, the predicted pose. A usable frame is
+// kept, so that the next frame can be matched with it. It gets the predicted pose or, without one,
+// the last good pose with the covariance of the unobserved motion since then.
 [[gnu::noinline]] void Odometry::lose(const CurrentFrame& frame, const Decision& decision,
                                       TrackResult& result) {
   result.state = TrackState::kLost;
@@ -192,10 +193,10 @@ void Odometry::note_pose(TrackResult& result) {
                         : unobserved_pose(window_, config_->references, frame.stamp_ns()));
 }
 
-// While tracking goes on after a start whose pose was not observed: if the view of a kept keyframe is back,
-// all poses are moved so that the pose of this frame is the one that follows from that keyframe, and the
-// result states it. tracked: holds the frame's own motion, which is accepted and no longer needed; it is
-// overwritten.
+// Called while tracking goes on after a start whose pose was not observed. If the view of a kept
+// keyframe is back, all poses are moved: this frame then has the pose that follows from that
+// keyframe. The result says so. tracked: the motion of this frame, which has been accepted and is
+// not needed any more; it is overwritten.
 [[gnu::noinline]] void Odometry::relocalise(const CurrentFrame& frame, TrackedMotion& tracked,
                                             TrackResult& result) {
   if (!relocalisation_.take(window_.kept(), config_->references)) return;
@@ -208,7 +209,7 @@ void Odometry::note_pose(TrackResult& result) {
 }
 
 // Forgets all poses and what depends on them; the learnt noise stays. The next usable frame is the first of a
-// new world. A world without a pose keeps its number for that frame.
+// new world. If the present world has no pose yet, the new world has the same number.
 void Odometry::forget_world() {
   if (window_.has_last()) ++world_;
   window_.clear();

@@ -17,11 +17,11 @@ class PropagatedPrior {
     *this = PropagatedPrior();
     whole_ = true;
   }
-  // Appends the prior of a frame, `seconds` after the one before. coasted: the motion meanwhile of a camera
-  // that keeps its velocity, (v, ω) of the scene times its seconds, in the axes of the last good frame's
-  // camera, as in exposure.hpp; it replaces what the prior lacks. After a prior without any motion the
-  // propagated prior is unknown until the next restart(); likewise once the position may be anywhere
-  // (covariance.hpp).
+  // Appends the prior of a frame, `seconds` after the one before. coasted: the motion in this time
+  // of a camera that keeps its velocity; it replaces what the prior lacks. It is (v, ω) of the
+  // scene, as in exposure.hpp, times the seconds of motion, in the axes of the last good frame's
+  // camera. After a prior without any motion, the propagated prior is unknown until the next
+  // restart(). The same holds once the position may be anywhere (covariance.hpp).
   void extend(const MotionPrior& prior, const Vector6& coasted, double seconds,
               const ReferenceConfig& config);
 

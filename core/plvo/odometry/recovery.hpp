@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Relocalisation after a loss, when the view of a kept keyframe comes back. Descriptors are matched over the
-// whole image, whatever the predicted pose; the motion is then registered and judged as usual. It is accepted
-// under two conditions. It finds the share of the keyframe's features that a keyframe needs to be kept. And
-// the resulting pose lies within the process noise of the unobserved motion: this rejects a similar view
-// elsewhere.
+// whole image, whatever the predicted pose; the motion is then registered and judged as usual. It
+// is accepted under two conditions. First, as large a share of the keyframe's features are inliers
+// as a keyframe needs to stay in use. Second, the resulting pose lies within the process noise of
+// the unobserved motion, so that a similar view elsewhere is rejected.
 #pragma once
 
 #include "plvo/odometry/tracking/reference_tracking.hpp"
@@ -19,7 +19,8 @@ bool still_seen(const FrameFeatures& reference, const ReferenceTracks& tracks, d
 bool recognise(const Window::Frame& keyframe, const CurrentFrame& frame, const Vector6& velocity,
                const PoseWithCovariance& believed, ReferenceTracking& tracking, TrackedMotion& tracked);
 
-// When kept keyframes are looked for while tracking goes on: in every frame but for an interval.
+// Decides in which frames the view of a kept keyframe is searched while tracking goes on: one in
+// every ReferenceConfig::relocalisation_interval_frames.
 class RelocalisationTurn {
  public:
   bool is_due(const KeptKeyframes& kept, const ReferenceConfig& config) const {

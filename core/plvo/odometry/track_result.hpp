@@ -66,8 +66,8 @@ struct TrackResult {
   StageTimes stage_ns{};       // zero without Config::stage_clock
 };
 
-// What a result tells ImuIntegrator::correct(); nothing where the frame was neither tracked nor starts a
-// trajectory.
+// The rotation of a result, for ImuIntegrator::correct(); empty if the frame was not tracked and
+// does not start a trajectory.
 std::optional<ObservedRotation> observed_rotation(const TrackResult& result);
 
 // Called where a result leaves the library. Makes its covariances valid as described above; valid ones stay

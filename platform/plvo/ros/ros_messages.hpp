@@ -18,7 +18,7 @@ void set_vector(const double* p, Vector& message) {
   message.z = p[2];
 }
 
-// Of a point or translation, and a quaternion.
+// Makes a pose of a point or a translation, and a quaternion.
 template <typename Vector, typename Quaternion>
 RosPose pose_of(const Vector& t, const Quaternion& q) {
   return {{t.x, t.y, t.z}, {q.x, q.y, q.z, q.w}};

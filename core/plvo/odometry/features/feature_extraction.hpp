@@ -67,19 +67,21 @@ class FeatureExtraction {
   // Makes the grey, undistorted pyramid of a colour image, whose size was checked. All functions below work
   // on it. Returns the mean brightness.
   double prepare_image(const StageContext& context, const ColourView& colour);
-  // L1, and P1 where `with_points`. Points and lines have no 3D yet.
+  // Finds the segments (L1) and, if `with_points`, the keypoints (P1). They have no 3D positions
+  // yet.
   void detect(const StageContext& context, const DepthSampler& depth, bool with_points,
               FrameFeatures& features);
-  // P1, unless the points were searched before.
+  // Finds the keypoints (P1), unless they were searched before.
   void find_points(const StageContext& context, const DepthSampler& depth, PointFeatures& points) const;
-  // P4 for points that were found, unless they were described before.
+  // Computes the descriptors of the keypoints, for matching (P4), unless they were computed before.
   void describe_points(const StageContext& context, PointFeatures& points) const;
   // Computes what a reference needs besides lines: P2 and P3 with the depth mask of each keypoint, and
   // samples of surfaces. Call it when the best estimate of the motion during the exposure is known.
   void lift(const StageContext& context, const DepthSampler& depth, FrameFeatures& features) const;
-  // L2 and L3, for the motion during the exposure. The segments that get 3D move to the front and are
-  // described. A second call, with a better motion, lifts these again if depth and colour have different
-  // exposures; a segment that cannot be lifted again keeps its old line.
+  // Lifts the segments to 3D lines (L2, L3), given the motion during the exposure. The segments
+  // that get 3D move to the front and are described. A second call, with a better motion, lifts
+  // these again if depth and colour have different exposures; a segment that cannot be lifted again
+  // keeps its old line.
   void lift_lines(const StageContext& context, const DepthSampler& depth, const Exposure& exposure,
                   LineFeatures& lines) const;
 

@@ -21,8 +21,8 @@ constexpr double kMoved_px = 3;
 // patch has to be more similar: it lies where it lay, without a change of perspective.
 constexpr AlignmentOptions kAtSamePixel{
     .max_iterations = 3, .max_shift_px = 2 * kStayed_px, .max_residual = 0.25};
-// The depth contradicts rest if so many points stayed, and a third of them has another depth than before: one
-// that differs by more than this many SDs.
+// Depth contradicts rest if at least kLeastContradicted points stayed, and for over a third of them
+// the depth has changed by more than kOtherDepthSigmas SDs.
 constexpr int kLeastContradicted = 30;
 constexpr double kOtherDepthSigmas = 3;
 // Nearly all matches are points that stayed if there are this many times as many as others.

@@ -40,8 +40,8 @@ StayedMatches count_stayed(std::span<const Reference> references, std::span<cons
                            const CarriedCells& cells);
 // Whether the estimate may be misled: most points stayed, and most other matches disagree.
 bool may_be_misled(const StayedMatches& before);
-// Whether nearly all matches are points that stayed, so that the camera seems to stand still, but too little
-// is explained by that: a camera at rest finds more of the scene again.
+// Whether nearly all matches are points that stayed, so that the camera seems to stand still,
+// although this explains too little of the scene. A camera at rest finds more of it again.
 bool contradicts_rest(const StayedMatches& before, double explained);
 // Whether many points stayed at their pixels although their depths changed: they are light, not places on a
 // surface.

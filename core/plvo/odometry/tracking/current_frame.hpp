@@ -21,7 +21,8 @@ struct Reference {
   Se3 T_current_predicted;  // T_current_reference as predicted
   PairTiming timing;
   MotionReference pose;  // relative to the base, the first of the references
-  // Whether its pose relative to the last good frame is known, from which the propagated prior starts.
+  // Whether its pose relative to the last good frame is known. The propagated prior starts from
+  // that frame.
   bool chained = true;
 };
 
@@ -42,10 +43,12 @@ struct CurrentFrame {
   const MotionPrior& prior;
 
   std::int64_t stamp_ns() const { return features.stamp_ns; }
-  // P1, and P1 with P4, unless they were done before; points are found with the predicted exposure.
+  // find_points() finds the keypoints (P1); describe_points() also computes their descriptors (P4).
+  // What was done before is not repeated. Points are found with the predicted exposure.
   void find_points() const;
   void describe_points() const;
-  // What a reference needs besides lines, and with `described` what it needs to be found by descriptors.
+  // Computes what a reference needs besides lines. described: also its descriptors, so that it can
+  // be searched by them.
   void lift_as_reference(const Exposure& exposure, bool described) const;
 };
 

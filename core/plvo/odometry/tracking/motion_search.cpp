@@ -19,21 +19,23 @@ constexpr double kAcceptedShareByFeatures = 0.2;
 // at most this many times in all: features that follow the new motion are then found.
 constexpr int kMostRegistrations = 3;
 // The image may be aligned to an object. Where the aligned and the predicted motion differ by more than this
-// in the plane z = 1 (4 px of a Kinect), a glance at both tells which one to start from. Otherwise
-// registration finds the same features from both.
+// in the plane z = 1 (4 px of a Kinect), a rough estimate from each (a glance) decides which one to
+// start from. If they differ by less, registration finds the same features from both.
 constexpr double kSameStart = 4.0 / 525;
 // The estimates of two glances are different motions if they differ by more than this in the plane z = 1 (2
 // px of a Kinect). If both explain about as much, the one from the prediction is taken, because a camera
-// mostly keeps its velocity. If they are the same motion, the aligned one is taken, because it is nearer to
-// it than a prediction that is 4 px off; but not if it explains clearly less.
+// mostly keeps its velocity. If both glances end in the same motion, the aligned start is taken,
+// because it is nearer to that motion than the prediction, which is 4 px off. The prediction is
+// taken only if it explains clearly more.
 constexpr double kOtherMotion = 2.0 / 525;
-// Where motions are compared, the evidence of one that a prior contradicts counts this much. It may be
-// accepted nevertheless: the prior may be the one that is wrong.
+// Factor on the evidence of a motion that a prior contradicts, when motions are compared. Such a
+// motion may still be accepted, because the prior may be wrong.
 constexpr double kWorthOfContradicted = 0.25;
-// Inertia speaks against a motion that accelerates a camera at rest, or a robot against its wheels, by more
-// than this, about g: a robot does not, and a hand seldom does. At 30 frames a second, an object that comes
-// into view at 0.4 m/s seems to do so. The evidence of such a motion counts this much. A camera is at rest if
-// the prediction moves features by less than kAtRest in the plane z = 1 (0.5 px of a Kinect).
+// A motion is a jolt if it would need an acceleration of more than this (about g): from rest, or
+// relative to the translation that wheels measured. A robot does not accelerate like this, and a
+// hand seldom does. At 30 frames a second, an object that comes into view at 0.4 m/s makes the
+// camera seem to do so. The evidence of a jolt is multiplied by kWorthOfJolt. A camera is at rest
+// if the prediction moves features by less than kAtRest in the plane z = 1 (0.5 px of a Kinect).
 constexpr double kMostAcceleration_m_per_s2 = 10;
 constexpr double kWorthOfJolt = 0.5;
 constexpr double kAtRest = 0.5 / 525;
@@ -45,8 +47,8 @@ constexpr double kWideSearch_px = 120;
 struct Explained {
   double evidence = 0;
   double share = 0;
-  // Of the evidence, where starts are compared. Whether the covariance contains a rival does not depend on
-  // it.
+  // Factor on the evidence when starts are compared. It plays no part in the decision whether the
+  // covariance contains a rival.
   double worth = 1;
 
   double weight() const { return worth * evidence; }
@@ -95,7 +97,8 @@ void for_each_extent(const FrameFeatures& features, const Visit& visit) {
   return found;
 }
 
-// Mean distance in the plane z = 1 between where two motions put the features of a reference.
+// Mean distance, in the plane z = 1, between the positions that two motions give the features of a
+// reference.
 double distance_between(const Se3& a, const Se3& b, const FrameFeatures& features) {
   double sum = 0;
   int n = 0;
@@ -147,8 +150,8 @@ class MotionSearch {
     if (has_rival && tracked_.ok() && is_other_motion(rival, tracked_.motion.T_current_reference))
       tracked_.motion.contain(boxminus(rival, tracked_.motion.T_current_reference));
     if (found.share < kAcceptedShareByImage) return false;
-    // An object may cover most of the image. The prediction, although it is near, may lead to the other
-    // motion.
+    // An object may cover most of the image. The search is therefore repeated from the prediction,
+    // which may lead to another motion although it is near.
     if (!are_apart &&
         (tracked_.motion.explained < kWorldAtRest || tracked_.motion.contradicted || found.worth < 1)) {
       explain(by_prediction, 1 / kComparableShare);
@@ -207,7 +210,8 @@ class MotionSearch {
     return tracked_.ok();
   }
 
-  // times: how much more than the best motion before it this one has to explain, to become the best.
+  // times: the motion becomes the best one if it explains more than this many times what the best
+  // one so far explains.
   Explained explain(const Se3& start, double times = 1) {
     Explained explained;
     if (refine(start)) explained = explained_by_tracked();

@@ -123,8 +123,8 @@ class ReferenceTracking {
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
-  // The references as their matches see them (tracks_), ready for an estimate. The features lie in the
-  // scratch.
+  // What an estimate needs besides the matches (tracks_): the features of each reference after
+  // row-time compensation, which lie in the scratch, and the poses of the references.
   struct Association {
     std::array<RowTimeCompensation, kMaxReferences> features;
     std::size_t references = 0;

@@ -83,8 +83,8 @@ class Window {
   int lost() const { return lost_; }
   bool has_lost() const { return lost_ != kNoFrame; }
   const KeptKeyframes& kept() const { return kept_; }
-  // The frames that the current one is matched with: the keyframe, which is the base, and as far as there are
-  // any the recent and the older one.
+  // The frames that the current one is matched with: the keyframe, which is the base, then the
+  // recent frame and the older keyframe if there are any.
   struct References {
     std::array<int, kMaxReferences> slots{};
     std::size_t count = 0;
@@ -117,7 +117,7 @@ class Window {
   // Gives the last frame, or without one the current frame, a pose in another world. The keyframe moves with
   // it; the lost and the kept frames stay behind and are dropped.
   void change_world(const PoseWithCovariance& pose);
-  // Where the camera was when the latest depth image came, as far as the world has not moved since.
+  // Pose of the camera when the latest depth image came; empty if the poses have been moved since.
   const std::optional<Se3>& T_world_depth() const { return T_world_depth_; }
   // The latest depth image came with the last frame.
   void note_depth() { T_world_depth_ = last_frame().pose.T_world_camera; }
@@ -143,7 +143,8 @@ class Window {
   void advance(const Kept& kept, bool keep_older);
   // No reference is in view any more: the keyframe joins the kept ones, and its role stays empty.
   void give_up();
-  // The latest of the kept keyframes, as if the references were given up; kNoFrame without any.
+  // The kept keyframe that would be the latest if the references were given up now; kNoFrame if
+  // there would be none.
   int latest_kept() const;
 
   // Whether the current frame can stay as the lost one: there is memory for the next frame, and a place where

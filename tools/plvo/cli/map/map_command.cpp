@@ -37,7 +37,7 @@ struct Box {
   Vector3 size() const { return (high - low).cwiseMax(0); }
 };
 
-// Of the keyframes whose place is known.
+// The keyframes whose place is known: their number, and the extent of their cameras and points.
 struct MapContents {
   std::size_t placed = 0;
   Box cameras, points;

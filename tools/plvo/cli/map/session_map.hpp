@@ -37,7 +37,7 @@ class SessionMap {
   void add(const Odometry& odometry, const FrameRecord& record);
   // Whether files will be written at the end.
   bool writes() const;
-  // Of the latest frame; nothing without a map.
+  // The result of the latest frame; empty without a map.
   const std::optional<MapResult>& latest() const { return latest_; }
   const Map& map() const { return map_; }
   // Positions of the keyframes as the map corrects them, in the world of the odometry, where the camera has

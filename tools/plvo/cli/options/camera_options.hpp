@@ -53,7 +53,7 @@ struct FrameRange {
 // "b": the first b frames; "a:b", "a:", ":b": frames a … b-1.
 bool parse_frame_range(const std::string& text, FrameRange& range);
 
-// Of numbered frames; their stamps stay within 64 bits.
+// Frame rates that numbered frames may have; with these their stamps stay within 64 bits.
 inline constexpr NumberRange kNumberedRates_hz = {0.1, 1000};
 CLI::Option* add_rate_option(OptionGroup& group, double& rate_hz);
 

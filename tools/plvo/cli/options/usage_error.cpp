@@ -44,7 +44,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-// Of the words that nothing took, the first that looks like an option; empty: there is none.
+// Returns the first of the unused words that looks like an option; empty if there is none.
 std::string unknown_option(const CLI::App& command) {
   const std::vector<std::string> words = command.remaining();
   const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) {

@@ -147,7 +147,7 @@ Status write_beside_images(const RecordOptions& options, const BesideImages& bes
   return status;
 }
 
-// Of the sensor or the recording.
+// Begins to write the readings of other sensors, from the live sensor or from the recording.
 Status begin_beside_images(const RecordOptions& options, const LiveCamera& camera, const BesideImages& beside,
                            LiveAccelerometer& accelerometer) {
   if (is_bag(options.camera.device)) return write_beside_images(options, beside);
