@@ -1,58 +1,67 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names and words that were replaced by standard terms stay out of code, comments and pages (docs/theory/notation.md has the terms).
-CHANGELOG.md may name them, as may golden files and the fuzzers' seeds."""
+CHANGELOG.md may name them, as may golden files, the fuzzers' seeds, and the tests of this check."""
 import pathlib
 import re
 import sys
 
 import sources
 
-# Old name or words, and the term to use. Identifiers match as whole words, also within snake_case.
-IDENTIFIERS = {
-    "kNobody": "kNoFrame", "SensedMotion": "PropagatedPrior", "HeldPose": "PoseWithCovariance", "GravityHold": "GravityFilter",
-    "SharedErrors": "NuisanceParameters", "MidExposure": "RowTimeCompensation", "own_surface": "depth_mask",
-    "side_by_side": "executor", "SideBySide": "Executor", "house_arrows": "dependencies", "tests/house": "tests/architecture",
-    "TrackResult::returned": "relocalised", "look_back": "relocalisation", "repeated_share": "common_mode_share",
-    "turning_rad_per_s": "angular_rate_error_rad_per_s", "unseen": "unobserved, or process noise", "new_piece": "restarted",
+# Old word -> the term to use.
+# Names: parts of identifiers as they are written here (a word in snake_case also in CamelCase). In prose they may have a plain meaning.
+NAMES = {
+    "kNobody": "kNoFrame", "MidExposure": "RowTimeCompensation", "own_surface": "depth_mask", "house": "plvo, the modules, or architecture",
+    "TrackResult::returned": "relocalised", "turning_rad_per_s": "angular_rate_error_rad_per_s", "new_piece": "restarted",
+    "sensed_motion": "PropagatedPrior", "held_pose": "PoseWithCovariance", "gravity_hold": "GravityFilter",
 }
-# Prose, in capitals or not, also across the end of a line.
-PHRASES = {
-    "front door": "public API", "carve": "allocate", "the house": "plvo, or the modules",
-    "lane": "element of a SIMD vector", "lanes": "SIMD vector, or its elements", "small code": "size-optimised code",
-    "side by side": "in parallel, or adjacent, or in one table", "shared errors": "nuisance parameters", "repeated share": "common-mode share",
-    "look back": "relocalise", "looks back": "relocalises", "looked back": "relocalised",
-    "piece of the trajectory": "restart", "pieces of the trajectory": "restarts",
-    "a walk": "a sequence", "simulated walk": "simulated sequence", "simulated walks": "simulated sequences",
-    "camera walks": "camera moves", "walking camera": "moving camera", "never moves": "zero-motion baseline",
-    "errs": "has an error", "convinces": "is accepted", "luggage": "what is carried", "clock of the wall": "real time",
+# Words: in prose and in names, with a hyphen, in snake_case or in CamelCase; with the endings of a noun or a verb; across the end of a line.
+WORDS = {
+    "front door": "public API", "carve": "allocate", "lane": "SIMD vector, or an element of one", "small code": "size-optimised code",
+    "side by side": "in parallel, or adjacent, or in one table", "shared error": "nuisance parameter", "repeated share": "common-mode share",
+    "look back": "relocalise", "piece of the trajectory": "restart", "never move": "zero-motion baseline", "unseen": "unobserved, or process noise",
+    "errs": "has an error", "erred": "had an error", "convince": "is accepted", "luggage": "what is carried",
+    "clock of the wall": "real time",
 }
-SUFFIXES = (*sources.CODE, *sources.SCRIPTS, ".js", ".html", ".in", ".txt", ".yaml", ".json")
-NOT_SEARCHED = ("CHANGELOG.md", "tests/architecture/words.py", "tests/golden/golden.txt", "tests/fuzz/seeds/")
+SUFFIXES = (*sources.CODE, *sources.SCRIPTS, ".pyi", ".js", ".html", ".in", ".txt", ".yaml", ".json")
+NOT_SEARCHED = ("CHANGELOG.md", "tests/architecture/words.py", "tests/golden/golden.txt", "tests/fuzz/seeds/", "tests/architecture/self_test.py")
 
 
-def patterns():
-    for word, term in IDENTIFIERS.items():
-        yield word, term, re.compile(rf"(?<![A-Za-z0-9]){re.escape(word)}(?![A-Za-z0-9])")
-    for words, term in PHRASES.items():
-        yield words, term, re.compile(r"\b" + r"(?:\s|//|#)+".join(words.split()) + r"\b", re.I)
+def name_pattern(name):
+    forms = [("" if name[0].isupper() else "(?<![A-Za-z0-9])") + re.escape(name)]
+    if name.islower():
+        forms.append("".join(part.capitalize() for part in name.split("_")))
+    return re.compile(f"(?:{'|'.join(forms)})(?![a-z0-9])")
+
+
+def word_pattern(words):
+    def inflected(word):
+        return word[:-1] + "(?:e|es|ed|ing)" if word.endswith("e") else word + "(?:s|es|ed|ing)?"
+    return re.compile(r"\b" + r"(?:\s|//|#)+".join(map(inflected, words.split())) + r"\b")
+
+
+def in_words(text):
+    """Returns the text in small letters, with a space between the words of a name; the ends of the lines do not change."""
+    return re.sub(r"[_-]|(?<=[a-z0-9])(?=[A-Z])", " ", text).lower()
 
 
 def pages_and_lists(root):
-    yield from sorted((*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("*.txt"), *root.glob("*.json")))
+    yield from sorted((*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("docs/**/*.ipynb"), *root.glob("*.txt"), *root.glob("*.json")))
 
 
 def check(root):
     root = pathlib.Path(root)
-    searched = list(patterns())
+    names = [(name, term, name_pattern(name)) for name, term in NAMES.items()]
+    words = [(word, term, word_pattern(word)) for word, term in WORDS.items()]
     errors = []
     for path in (*sources.files(root, suffixes=SUFFIXES), *pages_and_lists(root)):
-        name = path.relative_to(root).as_posix()
-        if name.startswith(NOT_SEARCHED):
+        file = path.relative_to(root).as_posix()
+        if file.startswith(NOT_SEARCHED):
             continue
         text = path.read_text(encoding="utf-8", errors="replace")
-        for words, term, pattern in searched:
-            for match in pattern.finditer(text):
-                errors.append(f"{name}:{text.count(chr(10), 0, match.start()) + 1}: \"{words}\": say {term}")
+        for searched, patterns in ((text, names), (in_words(text), words)):
+            for old, term, pattern in patterns:
+                for match in pattern.finditer(searched):
+                    errors.append(f"{file}:{searched.count(chr(10), 0, match.start()) + 1}: \"{old}\": say {term}")
     return errors
 
 

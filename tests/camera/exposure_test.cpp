@@ -58,7 +58,7 @@ TEST(Exposure, MovesAPointToTheRowTimeOfTheMiddleRow) {
   }
 }
 
-TEST(Exposure, AsSeenInvertsAtMidExposure) {
+TEST(Exposure, AsSeenMovesAPointBackToItsOwnRow) {
   const CameraModel camera = rolling_camera(0.0261);
   Random random(8);
   for (int trial = 0; trial < 200; ++trial) {

@@ -25,7 +25,7 @@ constexpr std::int64_t pair_of(double x, double y) {
 }
 std::int64_t pair_of(const Vector2& v) { return pair_of(v.x(), v.y()); }
 
-constexpr std::int16_t to_lane(std::int32_t q16) {
+constexpr std::int16_t to_step(std::int32_t q16) {
   return static_cast<std::int16_t>((q16 + (1 << (kRowShift - 1))) >> kRowShift);
 }
 
@@ -309,14 +309,14 @@ void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, Gra
   constexpr Int16x8 kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
   constexpr int kToWeight = kRowBits - kWeightBits;
   constexpr std::int16_t kRound = 1 << (kToWeight - 1);
-  const Int16x8 bent_x = kBows * to_lane(x_of(c.bend_right)) + kRound;
-  const Int16x8 bent_y = kBows * to_lane(y_of(c.bend_right)) + kRound;
+  const Int16x8 bent_x = kBows * to_step(x_of(c.bend_right)) + kRound;
+  const Int16x8 bent_y = kBows * to_step(y_of(c.bend_right)) + kRound;
   for (int j = first; j < last; ++j, out += out_stride) {
     const std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
     const std::int64_t right = c.right + j * c.twist;
     const PlainStart x(x_of(start), last_x_), y(y_of(start), last_y_);
-    Int16x8 at_x = (kSteps * to_lane(x_of(right)) + bent_x + x.at) >> kToWeight;
-    Int16x8 at_y = (kSteps * to_lane(y_of(right)) + bent_y + y.at) >> kToWeight;
+    Int16x8 at_x = (kSteps * to_step(x_of(right)) + bent_x + x.at) >> kToWeight;
+    Int16x8 at_y = (kSteps * to_step(y_of(right)) + bent_y + y.at) >> kToWeight;
     clamp(x.low, x.high, at_x);
     clamp(y.low, y.high, at_y);
     blend_eight(raw.data + y.base * raw.stride + x.base, raw.stride, at_x, at_y, out);
