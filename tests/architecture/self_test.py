@@ -388,11 +388,11 @@ class Layout(unittest.TestCase):
         "tests/math/a.hpp": '#include "plvo/math/se3.hpp"\n',
         "tests/math/other_test.cpp": '#include "a.hpp"\n',
         "tests/cli/cli_run_test.cpp": "",
-        "tests/accuracy/walk_test.py": "",
+        "tests/accuracy/drift_test.py": "",
         "tests/architecture/self_test.py": "",
         "tests/budget/self_test.py": "",
     }
-    ENTRIES = ("se3_test", "other_test.Alone", "cli_run_test", "walk_test", "golden_test")
+    ENTRIES = ("se3_test", "other_test.Alone", "cli_run_test", "drift_test", "golden_test")
 
     def found(self, more, entries=None):
         with Tree(self.GOOD | more) as root:
@@ -403,7 +403,7 @@ class Layout(unittest.TestCase):
         self.assertEqual(self.found({}, self.ENTRIES), [])
 
     def test_a_file_without_an_entry_is_named(self):
-        for k, name in enumerate(("se3_test", "other_test", "cli_run_test", "walk_test")):
+        for k, name in enumerate(("se3_test", "other_test", "cli_run_test", "drift_test")):
             errors = self.found({}, self.ENTRIES[:k] + self.ENTRIES[k + 1:])
             self.assertEqual(len(errors), 1, errors)
             self.assertTrue(errors[0].endswith(f"there is no ctest entry {name}"), errors)
@@ -428,9 +428,11 @@ class Words(unittest.TestCase):
     INFLECTED = ("carved", "carves", "Carving", "a convinced b", "side-by-side", "SideBySide", "run_side_by_side", "front-door", "two lanes",
                  "shared error", "shared errors", "SharedErrors", "RepeatedShare", "LookBack", "looked back", "look_back", "OwnSurface",
                  "Unseen", "kUnseen", "SmallCode", "small_code", "kMidExposure", "InvertsAtMidExposure", "never moved", "NeverMoves",
-                 "HeldPose", "held_pose", "house_arrows", "HouseRules", "tests/house")
+                 "HeldPose", "held_pose", "house_arrows", "HouseRules", "tests/house",
+                 "walks", "--out walk", "walk/rgb.txt", "simulated walks", "walk_0.db3", "struct Walk")
     OTHER = ("IdleConnectionsLockNobodyOut", "the houses", "planes", "PlaneLine", "robot.lan", "small.code", "at_mid_exposure", "mid-exposure",
-             "the keypoint's own surface", "gravity holds roll", "colPivHouseholderQr", "run.err", "the error", "a shared tracker", "moves")
+             "the keypoint's own surface", "gravity holds roll", "colPivHouseholderQr", "run.err", "the error", "a shared tracker", "moves",
+             "a random walk", "a random\n// walk", "RandomWalk", "gyro_offset_walk", "WalkingPerson")
 
     def found(self, name, text):
         with Tree({name: text}) as root:

@@ -20,8 +20,11 @@ WORDS = {
     "side by side": "in parallel, or adjacent, or in one table", "shared error": "nuisance parameter", "repeated share": "common-mode share",
     "look back": "relocalise", "piece of the trajectory": "restart", "never move": "zero-motion baseline", "unseen": "unobserved, or process noise",
     "errs": "has an error", "erred": "had an error", "convince": "is accepted", "luggage": "what is carried",
-    "clock of the wall": "real time",
+    "clock of the wall": "real time", "walk": "sequence, or recording",
 }
+# What is meant as it is said: the mathematical term, the person of the simulator, a case of the bench that docs/results repeats.
+BETWEEN = r"(?:\s|//|#)+"
+MEANT = re.compile(f"(?:random|gyro{BETWEEN}offset){BETWEEN}walk|walking{BETWEEN}person|a person walks ahead")
 SUFFIXES = (*sources.CODE, *sources.SCRIPTS, ".pyi", ".js", ".html", ".in", ".txt", ".yaml", ".json")
 NOT_SEARCHED = ("CHANGELOG.md", "tests/architecture/words.py", "tests/golden/golden.txt", "tests/fuzz/seeds/", "tests/architecture/self_test.py")
 
@@ -36,12 +39,12 @@ def name_pattern(name):
 def word_pattern(words):
     def inflected(word):
         return word[:-1] + "(?:e|es|ed|ing)" if word.endswith("e") else word + "(?:s|es|ed|ing)?"
-    return re.compile(r"\b" + r"(?:\s|//|#)+".join(map(inflected, words.split())) + r"\b")
+    return re.compile(r"\b" + BETWEEN.join(map(inflected, words.split())) + r"\b")
 
 
 def in_words(text):
     """Returns the text in small letters, with a space between the words of a name; the ends of the lines do not change."""
-    return re.sub(r"[_-]|(?<=[a-z0-9])(?=[A-Z])", " ", text).lower()
+    return MEANT.sub(lambda meant: "\n" * meant[0].count("\n"), re.sub(r"[_-]|(?<=[a-z0-9])(?=[A-Z])", " ", text).lower())
 
 
 def pages_and_lists(root):

@@ -313,12 +313,12 @@ TEST_F(Bench, UnwritableOutputIsAnError) {
 }
 
 TEST_F(Bench, NamesAreEscapedForTheTerminal) {
-  const fs::path hostile = *folder_ / "walk\x1b[31m\nx";
+  const fs::path hostile = *folder_ / "sequence\x1b[31m\nx";
   fs::copy(rendered("constant"), hostile, fs::copy_options::recursive);
   const std::string run = kBench + " run '" + hostile.string() + "' --systems plvo-points --out ";
   const CommandResult table = run_command(run + (*folder_ / "hostile").string());
   EXPECT_EQ(table.exit_code, 0) << table.err;
-  EXPECT_EQ(rows_with(table.out, "walk\\x1b[31m\\nx | plvo-points").size(), 1U) << table.out;
+  EXPECT_EQ(rows_with(table.out, "sequence\\x1b[31m\\nx | plvo-points").size(), 1U) << table.out;
   const CommandResult list = run_command(run + (*folder_ / "not_yet").string() + " --list-jobs");
   EXPECT_EQ(list.exit_code, 1);
   EXPECT_NE(list.err.find("rename it"), std::string::npos) << list.err;

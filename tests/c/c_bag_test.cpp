@@ -5,11 +5,11 @@
 
 #include "bag_of_folder.hpp"
 #include "command.hpp"
+#include "moving_imu.hpp"
 #include "plvo/c/sequence.h"
 #include "procedural_sequence.hpp"
 #include "temporary_folder.hpp"
 #include "tiny_sequence.hpp"
-#include "walking_imu.hpp"
 
 namespace plvo {
 namespace {
@@ -83,13 +83,13 @@ TEST_F(CBag, EqualsTheFramesOfTheFolder) {
 TEST_F(CBag, ProgramOfThePageEqualsThePosesOfTheFolder) {
   ProceduralSequence rendered(320, 240);
   TumWriter writer;
-  ASSERT_TRUE(writer.open(folder_ / "walk", rendered.camera(), 1000).ok());
+  ASSERT_TRUE(writer.open(folder_ / "sequence", rendered.camera(), 1000).ok());
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(writer.write(rendered.render(i)).ok());
   // Whole units of 16UC1 are millimetres.
-  write_file(folder_ / "walk.bag", test::bag_of(test::published(folder_ / "walk", false), "none"));
+  write_file(folder_ / "recording.bag", test::bag_of(test::published(folder_ / "sequence", false), "none"));
   const std::string program = PLVO_C_EXAMPLE;
-  const test::CommandResult of_folder = test::run_command(program + ' ' + (folder_ / "walk").string());
-  const test::CommandResult of_bag = test::run_command(program + ' ' + (folder_ / "walk.bag").string());
+  const test::CommandResult of_folder = test::run_command(program + ' ' + (folder_ / "sequence").string());
+  const test::CommandResult of_bag = test::run_command(program + ' ' + (folder_ / "recording.bag").string());
   EXPECT_EQ(of_bag.exit_code, 0) << of_bag.err;
   EXPECT_EQ(of_bag.out, of_folder.out);
   EXPECT_EQ(std::count(of_bag.out.begin(), of_bag.out.end(), '\n'), 4) << of_bag.out;
@@ -117,7 +117,7 @@ TEST_F(CBag, ChoosesTopicsByName) {
 TEST_F(CBag, ReadsGyroAndAccelerometer) {
   ProceduralSequence rendered(320, 240);
   TumWriter writer;
-  ASSERT_TRUE(writer.open(folder_ / "walk", rendered.camera(), 1000).ok());
+  ASSERT_TRUE(writer.open(folder_ / "sequence", rendered.camera(), 1000).ok());
   ImuRecording recorded;
   for (int i = 0; i < 4; ++i) {
     ASSERT_TRUE(writer.write(rendered.render(i)).ok());
@@ -126,16 +126,16 @@ TEST_F(CBag, ReadsGyroAndAccelerometer) {
       recorded.accelerometer.push_back({reading.stamp_ns, reading.force});
     }
   }
-  ASSERT_TRUE(write_imu_files(folder_ / "walk", recorded, ImuAxes::kSensor).ok());
+  ASSERT_TRUE(write_imu_files(folder_ / "sequence", recorded, ImuAxes::kSensor).ok());
   std::vector<test::RecordedMessage> messages =
-      test::published_imu(folder_ / "walk", "/imu", test::ImuContent::kBoth);
-  const std::vector<test::RecordedMessage> images = test::published(folder_ / "walk", false);
+      test::published_imu(folder_ / "sequence", "/imu", test::ImuContent::kBoth);
+  const std::vector<test::RecordedMessage> images = test::published(folder_ / "sequence", false);
   messages.insert(messages.end(), images.begin(), images.end());
-  write_file(folder_ / "walk.bag", test::bag_of(messages, "lz4"));
+  write_file(folder_ / "recording.bag", test::bag_of(messages, "lz4"));
 
   const std::string program = PLVO_C_IMU_EXAMPLE;
-  const test::CommandResult of_folder = test::run_command(program + ' ' + (folder_ / "walk").string());
-  const test::CommandResult of_bag = test::run_command(program + ' ' + (folder_ / "walk.bag").string());
+  const test::CommandResult of_folder = test::run_command(program + ' ' + (folder_ / "sequence").string());
+  const test::CommandResult of_bag = test::run_command(program + ' ' + (folder_ / "recording.bag").string());
   EXPECT_EQ(of_bag.exit_code, 0) << of_bag.err;
   EXPECT_EQ(of_bag.out, of_folder.out);
   EXPECT_EQ(std::count(of_bag.out.begin(), of_bag.out.end(), '\n'), 4) << of_bag.out;
@@ -143,14 +143,14 @@ TEST_F(CBag, ReadsGyroAndAccelerometer) {
   plvo_bag_topics topics = {};
   topics.struct_size = offsetof(plvo_bag_topics, gyro);  // a program that knows neither of the two fields
   topics.gyro = "/side/imu";
-  const Opened older((folder_ / "walk.bag").string(), topics);
+  const Opened older((folder_ / "recording.bag").string(), topics);
   plvo_imu_readings readings = {};
   readings.struct_size = sizeof readings;
   EXPECT_EQ(plvo_sequence_imu(older.sequence, &readings).code, PLVO_OK);
   ASSERT_EQ(readings.gyro_count, recorded.gyro.size());
   EXPECT_EQ(readings.gyro[1].value[0], recorded.gyro[1].value.x());
   topics.struct_size = sizeof topics;
-  const Opened named((folder_ / "walk.bag").string(), topics);
+  const Opened named((folder_ / "recording.bag").string(), topics);
   ASSERT_EQ(named.status.code, PLVO_OK) << named.status.message;
   const plvo_status status = plvo_sequence_imu(named.sequence, &readings);
   EXPECT_EQ(status.code, PLVO_NOT_FOUND);

@@ -9,9 +9,9 @@
 
 #include "allocation_guard.hpp"
 #include "c_support.hpp"
+#include "moving_imu.hpp"
 #include "plvo/c/imu.h"
 #include "plvo/c/matrices.hpp"
-#include "walking_imu.hpp"
 
 namespace plvo {
 namespace {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "c_support.hpp"
+#include "moving_imu.hpp"
 #include "page_functions.h"
 #include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/motion/wheel_prior.hpp"
 #include "procedural_sequence.hpp"
-#include "walking_imu.hpp"
 
 namespace plvo {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "moving_imu.hpp"
 #include "plvo/c/sequence.h"
 #include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/odometry/odometry.hpp"
@@ -16,7 +17,6 @@
 #include "plvo/replay/recorded_imu.hpp"
 #include "plvo/replay/tum_writer.hpp"
 #include "procedural_sequence.hpp"
-#include "walking_imu.hpp"
 
 namespace plvo {
 namespace {
@@ -39,7 +39,7 @@ class CRecordedImu : public testing::Test {
     ASSERT_TRUE(write_imu_files(recording(), recorded_, ImuAxes::kSensor).ok());
   }
   void TearDown() override { plvo_sequence_close(sequence_); }
-  std::filesystem::path recording() const { return folder_ / "walk"; }
+  std::filesystem::path recording() const { return folder_ / "sequence"; }
   plvo_status read(plvo_imu_readings& readings) {
     plvo_sequence_close(sequence_);
     EXPECT_EQ(plvo_sequence_open(recording().c_str(), nullptr, &sequence_).code, PLVO_OK);

@@ -171,13 +171,13 @@ TEST(CSequence, TheProgramOfThePageTracksAFolder) {
   const test::TemporaryFolder folder;
   ProceduralSequence rendered(320, 240);
   TumWriter writer;
-  ASSERT_TRUE(writer.open(folder / "walk", rendered.camera(), 1000).ok());
+  ASSERT_TRUE(writer.open(folder / "sequence", rendered.camera(), 1000).ok());
   for (int i = 0; i < kFrames; ++i) ASSERT_TRUE(writer.write(rendered.render(i)).ok());
 
   Calibration calibration;
-  ASSERT_TRUE(read_calibration(folder / "walk" / "calibration.txt", calibration).ok());
+  ASSERT_TRUE(read_calibration(folder / "sequence" / "calibration.txt", calibration).ok());
   RecordedCamera camera;
-  ASSERT_TRUE(camera.open(folder / "walk", calibration).ok());
+  ASSERT_TRUE(camera.open(folder / "sequence", calibration).ok());
   Limits limits;
   limits.width = 320;
   limits.height = 240;
@@ -194,7 +194,7 @@ TEST(CSequence, TheProgramOfThePageTracksAFolder) {
   ASSERT_EQ(expected.size(), static_cast<std::size_t>(kFrames));
 
   const test::CommandResult run =
-      test::run_command(std::string(PLVO_C_EXAMPLE) + ' ' + (folder / "walk").string());
+      test::run_command(std::string(PLVO_C_EXAMPLE) + ' ' + (folder / "sequence").string());
   EXPECT_EQ(run.exit_code, 0) << run.err;
   std::istringstream lines(run.out);
   std::size_t count = 0;

@@ -32,7 +32,7 @@ class CliBagCommands : public test::PlvoCommand {
         test::published_imu(recorded_sequence(), "/imu", ImuContent::kBoth);
     const std::vector<RecordedMessage> images = test::published(recorded_sequence(), true);
     messages.insert(messages.end(), images.begin(), images.end());
-    write_file(folder_ / "walk.bag", test::bag_of(messages, "none"));
+    write_file(folder_ / "recording.bag", test::bag_of(messages, "none"));
   }
   static void expect_refused(const std::string& arguments, int exit_code, const std::string& words) {
     PlvoCommand::expect_refused(plvo(arguments), exit_code, words);
@@ -57,7 +57,7 @@ TEST_F(CliBagCommands, EscapesControlCharactersInTopicNames) {
     }
   write_file(folder_ / "two.bag", test::bag_of(messages, "none"));
   for (const std::string& words :
-       {"run " + path("two.bag"), "run " + path("walk.bag") + " --depth-topic '/\x1b[31m'"}) {
+       {"run " + path("two.bag"), "run " + path("recording.bag") + " --depth-topic '/\x1b[31m'"}) {
     const CommandResult r = plvo(words);
     EXPECT_NE(r.exit_code, 0);
     EXPECT_NE(r.err.find("\\x1b[31m"), std::string::npos) << r.err;
@@ -69,13 +69,13 @@ TEST_F(CliBagCommands, EscapesControlCharactersInTopicNames) {
 }
 
 TEST_F(CliBagCommands, FindsGroundTruthBesideTheBag) {
-  const std::string bag = path("walk.bag"), run = " --readout 0 --quiet --out " + path("t") + " --json ";
+  const std::string bag = path("recording.bag"), run = " --readout 0 --quiet --out " + path("t") + " --json ";
   ASSERT_EQ(plvo("run " + bag + run + path("without")).exit_code, 0);
   EXPECT_FALSE(nlohmann::json::parse(read_file(folder_ / "without")).contains("evaluation"));
   expect_refused("eval --gt " + bag + " --est " + path("t"), 1,
-                 "walk.bag has no poses: put the true ones beside it, as walk-groundtruth.txt, or "
+                 "recording.bag has no poses: put the true ones beside it, as recording-groundtruth.txt, or "
                  "name a trajectory");
-  fs::copy_file(recorded_sequence() / "groundtruth.txt", folder_ / "walk-groundtruth.txt");
+  fs::copy_file(recorded_sequence() / "groundtruth.txt", folder_ / "recording-groundtruth.txt");
   ASSERT_EQ(plvo("run " + bag + run + path("with")).exit_code, 0);
   ASSERT_EQ(plvo("run " + recorded_sequence().string() + run + path("folder")).exit_code, 0);
   const auto evaluation = [&](const char* name) {
@@ -90,18 +90,19 @@ TEST_F(CliBagCommands, FindsGroundTruthBesideTheBag) {
   EXPECT_EQ(of_bag.out, of_folder.out);
   expect_refused("eval --gt " + bag + " --gt-format tum --est " + path("t"), 2,
                  "--gt-format: is for a trajectory");
-  expect_refused("eval --est " + bag + " --gt " + path("walk-groundtruth.txt"), 2,
+  expect_refused("eval --est " + bag + " --gt " + path("recording-groundtruth.txt"), 2,
                  "--est: a ROS bag is a recording; name the trajectory");
-  expect_refused("run " + bag + " --out " + path("walk-groundtruth.txt"), 2, "is an input");
-  expect_refused("eval --gt " + bag + " --est " + path("t") + " --json " + path("walk-groundtruth.txt"), 2,
-                 "is an input");
+  expect_refused("run " + bag + " --out " + path("recording-groundtruth.txt"), 2, "is an input");
+  expect_refused("eval --gt " + bag + " --est " + path("t") + " --json " + path("recording-groundtruth.txt"),
+                 2, "is an input");
 }
 
 TEST_F(CliBagCommands, RecordWritesAFolder) {
-  const CommandResult r = plvo("record " + path("made") + " --imu --readout 0 --device " + path("walk.bag"));
+  const CommandResult r =
+      plvo("record " + path("made") + " --imu --readout 0 --device " + path("recording.bag"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_NE(r.out.find("6 frames in "), std::string::npos) << r.out;
-  const std::string bag = path("walk.bag"), made = path("made");
+  const std::string bag = path("recording.bag"), made = path("made");
   EXPECT_EQ(bytes_of(made), bytes_of(bag));
   EXPECT_EQ(bytes_of(made, "--imu"), bytes_of(bag, "--imu"));
   EXPECT_NE(bytes_of(made, "--imu"), bytes_of(made)) << "the readings matter";
@@ -117,14 +118,14 @@ TEST_F(CliBagCommands, RecordWritesOneFileForAnAccelerometerAlone) {
       test::published_imu(recorded_sequence(), "/imu", ImuContent::kAcceleration);
   const std::vector<RecordedMessage> images = test::published(recorded_sequence(), true);
   messages.insert(messages.end(), images.begin(), images.end());
-  write_file(folder_ / "walk.bag", test::bag_of(messages, "none"));
-  ASSERT_EQ(plvo("record " + path("made") + " --imu --device " + path("walk.bag")).exit_code, 0);
+  write_file(folder_ / "recording.bag", test::bag_of(messages, "none"));
+  ASSERT_EQ(plvo("record " + path("made") + " --imu --device " + path("recording.bag")).exit_code, 0);
   EXPECT_FALSE(fs::exists(folder_ / "made/gyroscope.txt"));
-  EXPECT_EQ(bytes_of(path("made"), "--imu"), bytes_of(path("walk.bag"), "--imu"));
+  EXPECT_EQ(bytes_of(path("made"), "--imu"), bytes_of(path("recording.bag"), "--imu"));
 }
 
 TEST_F(CliBagCommands, LivePlaysEveryFrame) {
-  const CommandResult r = plvo("live --readout 0 --quiet --device " + path("walk.bag") + " --record " +
+  const CommandResult r = plvo("live --readout 0 --quiet --device " + path("recording.bag") + " --record " +
                                path("kept") + " --out " + path("t") + " --covariance " + path("c"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
   const std::string bytes = read_file(folder_ / "t") + read_file(folder_ / "c");
@@ -144,7 +145,7 @@ TEST_F(CliBagCommands, LiveEndsInAGapOfTheRecording) {
 }
 
 TEST_F(CliBagCommands, RejectsOptionsThatDoNotApply) {
-  const std::string device = " --device " + path("walk.bag");
+  const std::string device = " --device " + path("recording.bag");
   expect_refused("record " + path("x.oni") + device, 2, "a ROS bag is kept as a folder, not as an .oni file");
   expect_refused("live --record " + path("x.oni") + device, 2,
                  "a ROS bag and the simulated camera are kept as a folder");
@@ -155,14 +156,14 @@ TEST_F(CliBagCommands, RejectsOptionsThatDoNotApply) {
   expect_refused("live --colour-topic /x", 2, "--colour-topic: is for a ROS bag");
   expect_refused("record " + path("x") + " --gyro-topic /imu" + device, 2, "--gyro-topic: is for --imu");
   expect_refused("record " + path("x.oni") + " --imu", 2, "--imu: an .oni file keeps no readings of it");
-  expect_refused("record " + path("x") + " --imu --device walk.oni", 2,
+  expect_refused("record " + path("x") + " --imu --device recording.oni", 2,
                  "--imu: does not apply to an .oni file");
   expect_refused("doctor" + device, 2, "--device: a ROS bag is no sensor");
   expect_refused("calibrate " + recorded_sequence().string() + " --depth-topic /x --out " + path("y"), 2,
                  "--depth-topic: is for a ROS bag");
-  expect_refused("calibrate " + path("walk.bag") + " --depth-topic /x --out " + path("y"), 1,
+  expect_refused("calibrate " + path("recording.bag") + " --depth-topic /x --out " + path("y"), 1,
                  "there are no images on /x; images are on: ");
-  expect_refused("calibrate " + path("walk.bag") + " --out " + path("walk.bag"), 2, "is an input");
+  expect_refused("calibrate " + path("recording.bag") + " --out " + path("recording.bag"), 2, "is an input");
   expect_refused("record " + path("x") + " --imu --gyro-topic /x" + device, 1,
                  "there are no readings of a gyro (sensor_msgs/Imu) on /x; they are on /imu");
   expect_refused("record " + path("x") + " --device " + path("none.bag"), 1, "none.bag");

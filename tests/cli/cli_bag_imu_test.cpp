@@ -29,7 +29,7 @@ class CliBagImu : public test::PlvoCommand {
     for (const Messages& part : readings) all.insert(all.end(), part.begin(), part.end());
     const Messages images = test::published(recorded_sequence(), true);
     all.insert(all.end(), images.begin(), images.end());
-    write_file(folder_ / "walk.bag", test::bag_of(all, "lz4"));
+    write_file(folder_ / "recording.bag", test::bag_of(all, "lz4"));
   }
   CommandResult run(const std::string& recording, const std::string& options) const {
     return plvo("run " + recording + " --readout 0 --quiet --out " + path("t") + " --covariance " +
@@ -42,7 +42,7 @@ class CliBagImu : public test::PlvoCommand {
     return read_file(folder_ / "t") + read_file(folder_ / "c");
   }
   void expect_refused(const std::string& options, int exit_code, const std::string& words) const {
-    PlvoCommand::expect_refused(run(path("walk.bag"), options), exit_code, words);
+    PlvoCommand::expect_refused(run(path("recording.bag"), options), exit_code, words);
   }
 };
 
@@ -50,17 +50,17 @@ TEST_F(CliBagImu, EqualsTheBytesOfTheFolder) {
   const std::string expected = bytes_of(recorded_sequence().string(), "--imu");
   EXPECT_NE(expected, bytes_of(recorded_sequence().string(), "")) << "the readings matter";
   write({readings("/imu", ImuContent::kBoth)});
-  EXPECT_EQ(bytes_of(path("walk.bag"), "--imu"), expected);
-  EXPECT_EQ(bytes_of(path("walk.bag"), "--imu --imu-axes x,-y,-z"),
+  EXPECT_EQ(bytes_of(path("recording.bag"), "--imu"), expected);
+  EXPECT_EQ(bytes_of(path("recording.bag"), "--imu --imu-axes x,-y,-z"),
             bytes_of(recorded_sequence().string(), "--imu --imu-axes x,-y,-z"));
   // Sorted by stamp, whatever the order in the file.
   Messages backwards = readings("/imu", ImuContent::kBoth);
   std::reverse(backwards.begin(), backwards.end());
   write({backwards});
-  EXPECT_EQ(bytes_of(path("walk.bag"), "--imu"), expected);
+  EXPECT_EQ(bytes_of(path("recording.bag"), "--imu"), expected);
   write({readings("/camera/gyro/sample", ImuContent::kGyroAlone),
          readings("/camera/accel/sample", ImuContent::kAccelerationAlone)});
-  EXPECT_EQ(bytes_of(path("walk.bag"), "--imu"), expected);
+  EXPECT_EQ(bytes_of(path("recording.bag"), "--imu"), expected);
 }
 
 TEST_F(CliBagImu, UsesAnAccelerometerAlone) {
@@ -69,7 +69,7 @@ TEST_F(CliBagImu, UsesAnAccelerometerAlone) {
   const std::string expected = bytes_of(path("still"), "--imu");
   for (const ImuContent content : {ImuContent::kAcceleration, ImuContent::kAccelerationAlone}) {
     write({readings("/imu", content)});
-    EXPECT_EQ(bytes_of(path("walk.bag"), "--imu"), expected);
+    EXPECT_EQ(bytes_of(path("recording.bag"), "--imu"), expected);
     expect_refused("--imu", 0, "no gyro: gravity alone helps");
   }
 }
@@ -84,8 +84,9 @@ TEST_F(CliBagImu, ChoosesOneOfSeveralTopicsByName) {
       "several topics have readings of a gyro: choose with --gyro-topic or topics.gyro; they are on "
       "/base/imu, /camera/imu");
   expect_refused("--imu --gyro-topic /camera/imu", 1, "choose with --accelerometer-topic");
-  EXPECT_EQ(bytes_of(path("walk.bag"), "--imu --gyro-topic /camera/imu --accelerometer-topic /camera/imu"),
-            expected);
+  EXPECT_EQ(
+      bytes_of(path("recording.bag"), "--imu --gyro-topic /camera/imu --accelerometer-topic /camera/imu"),
+      expected);
   // Damaged messages are left out and counted.
   expect_refused("--imu --gyro-topic /base/imu --accelerometer-topic /base/imu", 0,
                  std::to_string((other.size() + 1) / 2) + " readings of gyro and accelerometer left out");

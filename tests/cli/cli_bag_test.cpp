@@ -27,9 +27,11 @@ std::vector<RecordedMessage> published(bool metres) { return test::published(rec
 
 class CliBag : public test::PlvoCommand {
  protected:
-  CommandResult run(const std::string& more) const { return plvo("run " + path("walk.bag") + ' ' + more); }
+  CommandResult run(const std::string& more) const {
+    return plvo("run " + path("recording.bag") + ' ' + more);
+  }
   void write(const std::vector<RecordedMessage>& messages, const std::string& compression = "none") const {
-    write_file(folder_ / "walk.bag", test::bag_of(messages, compression));
+    write_file(folder_ / "recording.bag", test::bag_of(messages, compression));
   }
   void run_folder() const {
     const CommandResult r = plvo("run " + recorded_sequence().string() + " --quiet --out " + path("folder") +
@@ -74,7 +76,8 @@ TEST_F(CliBag, ReadsBagsOfRosLibrary) {
   run_folder();
   std::string error;
   for (const char* compression : {"none", "bz2", "lz4"}) {
-    ASSERT_TRUE(test::write_bag_with_library(path("walk.bag"), compression, published(true), error)) << error;
+    ASSERT_TRUE(test::write_bag_with_library(path("recording.bag"), compression, published(true), error))
+        << error;
     expect_the_folders_bytes("");
   }
 #else
@@ -85,10 +88,11 @@ TEST_F(CliBag, ReadsBagsOfRosLibrary) {
 TEST_F(CliBag, RunsToTheEndOfATruncatedBag) {
   run_folder();
   const std::string whole = test::bag_of(published(true), "none");
-  write_file(folder_ / "walk.bag", whole.substr(0, whole.size() * 7 / 10));
+  write_file(folder_ / "recording.bag", whole.substr(0, whole.size() * 7 / 10));
   const CommandResult r = run("--readout 0 --json " + path("j") + " --out " + path("t"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
-  EXPECT_NE(r.err.find("warning: walk.bag is cut short; what lies before byte "), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("warning: recording.bag is cut short; what lies before byte "), std::string::npos)
+      << r.err;
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "j"))["frames"], 4);
   EXPECT_TRUE(read_file(folder_ / "folder").starts_with(read_file(folder_ / "t")))
       << "the same poses until there";
@@ -234,7 +238,7 @@ TEST_F(CliBag, ReportsUnreadableBags) {
   expect_refused("--scale 2", 2, "--scale: images of 160x120 scaled down by 2 are 80x60");
   expect_refused("--rate 30", 2, "does not apply to a ROS bag");
   expect_refused("--colour-topic ''", 2, "--colour-topic: expected the name of a topic");
-  expect_refused("--out " + path("walk.bag"), 2, "is an input, which would be overwritten");
+  expect_refused("--out " + path("recording.bag"), 2, "is an input, which would be overwritten");
   const CommandResult folder = plvo("run " + recorded_sequence().string() + " --depth-topic /x");
   EXPECT_EQ(folder.exit_code, 2);
   EXPECT_NE(folder.err.find("--depth-topic: is for a ROS bag"), std::string::npos) << folder.err;

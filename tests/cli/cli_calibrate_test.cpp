@@ -33,8 +33,8 @@ constexpr const char* kLens = " --fx 262.5 --fy 262.5 --cx 159.5 --cy 119.5 --de
 
 TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   const TemporaryFolder folder;
-  const std::string recording = (folder / "walk").string(), yaml = (folder / "camera.yaml").string();
-  record_turns(folder, "walk", 1, 60);
+  const std::string recording = (folder / "sequence").string(), yaml = (folder / "camera.yaml").string();
+  record_turns(folder, "sequence", 1, 60);
   // The lens is given, but no timing of depth.
   const CommandResult r = run_plvo("calibrate " + recording + " --find delay --quiet --json - --report " +
                                    (folder / "page.html").string() + " --out " + yaml + kLens);
@@ -94,11 +94,11 @@ TEST(CliCalibrate, SeveralRecordingsGiveOneAnswer) {
 
 TEST(CliCalibrate, ShowsProgressOnATerminal) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
-  const CommandResult r = run_command("script -qefc '" + kPlvo + " calibrate " + (folder / "walk").string() +
-                                      " --out /dev/null' /dev/null");
+  ASSERT_TRUE(test::write_tiny_sequence(folder / "sequence", 5).ok());
+  const CommandResult r = run_command("script -qefc '" + kPlvo + " calibrate " +
+                                      (folder / "sequence").string() + " --out /dev/null' /dev/null");
   EXPECT_EQ(r.exit_code, 1) << r.out;
-  EXPECT_NE(r.out.find("walk: tracking frame 1 of at most 5"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("sequence: tracking frame 1 of at most 5"), std::string::npos) << r.out;
 }
 
 TEST(CliCalibrate, RecordingsOfTwoSensorsAreRefused) {
@@ -117,9 +117,9 @@ TEST(CliCalibrate, RecordingsOfTwoSensorsAreRefused) {
 
 TEST(CliCalibrate, ARecordingThatIsTooShortIsRefusedInOneLine) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
+  ASSERT_TRUE(test::write_tiny_sequence(folder / "sequence", 5).ok());
   const std::string yaml = (folder / "camera.yaml").string();
-  const CommandResult r = run_plvo("calibrate --quiet " + (folder / "walk").string() + " --out " + yaml);
+  const CommandResult r = run_plvo("calibrate --quiet " + (folder / "sequence").string() + " --out " + yaml);
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_EQ(r.out, "");
   EXPECT_EQ(r.err.rfind("plvo: error: only ", 0), 0u) << r.err;
@@ -132,8 +132,8 @@ TEST(CliCalibrate, ARecordingThatIsTooShortIsRefusedInOneLine) {
 
 TEST(CliCalibrate, AnInputIsNotOverwritten) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 2).ok());
-  const std::string recording = (folder / "walk").string();
+  ASSERT_TRUE(test::write_tiny_sequence(folder / "sequence", 2).ok());
+  const std::string recording = (folder / "sequence").string();
   const CommandResult r = run_plvo("calibrate " + recording + " --out " + recording + "/calibration.txt");
   EXPECT_EQ(r.exit_code, 2);
   EXPECT_NE(r.err.find("is an input, which would be overwritten"), std::string::npos) << r.err;

@@ -74,8 +74,8 @@ class BashCompletion : public ::testing::Test {
  protected:
   BashCompletion() {
     write_file(folder_ / "plvo.bash", printed("completion bash"));
-    write_file(folder_ / "walk file.txt", "");
-    std::filesystem::create_directory(folder_ / "walks");
+    write_file(folder_ / "sequence file.txt", "");
+    std::filesystem::create_directory(folder_ / "sequences");
   }
   // Returns the completions offered for the last of these words.
   std::set<std::string> offered(const std::string& words) const {
@@ -103,10 +103,10 @@ TEST_F(BashCompletion, OffersCommandsOptionsValuesAndFiles) {
   EXPECT_EQ(offered("run --features ''"), (Words{"points", "lines", "both"}));
   EXPECT_EQ(offered("run --camera-model tum-"), (Words{"tum-fr1", "tum-fr2", "tum-fr3"}));
   EXPECT_EQ(offered("tilt --led blink-g"), Words{"blink-green"});
-  EXPECT_EQ(offered("run --out wa"), (Words{"walk file.txt", "walks"}));
-  EXPECT_EQ(offered("run --overlay wa"), Words{"walks"});
+  EXPECT_EQ(offered("run --out seq"), (Words{"sequence file.txt", "sequences"}));
+  EXPECT_EQ(offered("run --overlay seq"), Words{"sequences"});
   EXPECT_EQ(offered("run --fx ''"), Words{});
-  EXPECT_EQ(offered("run wa"), (Words{"walk file.txt", "walks"}));
+  EXPECT_EQ(offered("run seq"), (Words{"sequence file.txt", "sequences"}));
 }
 
 // The other shells only check the syntax of their scripts.

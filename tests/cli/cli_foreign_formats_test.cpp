@@ -54,8 +54,8 @@ TEST_F(CliForeignFormats, RecordingsOfRosAreToldByContentAndName) {
         {"b.bag", mcap, "b.bag is cut short"},
         {"a.db3", "", "is not a database of rosbag2"},
         {"c.data", sqlite, "is not a database of SQLite"},
-        {"walk.bag.active", "#ROSBAG V2.0\n", "walk.bag.active is cut short"},
-        {"walk.bag", "", "is not a ROS 1 bag"}}) {
+        {"recording.bag.active", "#ROSBAG V2.0\n", "recording.bag.active is cut short"},
+        {"recording.bag", "", "is not a ROS 1 bag"}}) {
     write_file(path(file), content);
     const CommandResult r = plvo("run " + path(file));
     EXPECT_EQ(r.exit_code, 1) << file << r.err;

@@ -129,7 +129,8 @@ TEST_F(CliLiveMapStream, TellsWhereTheCameraIsInTheMap) {
 }
 
 TEST_F(CliLiveSim, WhatDoesNotApplyIsRefused) {
-  expect_refused(plvo("live --device walk.bag" + kSimulated), 2, "--device: is for a sensor or a recording");
+  expect_refused(plvo("live --device recording.bag" + kSimulated), 2,
+                 "--device: is for a sensor or a recording");
   expect_refused(plvo("live --mode 320x240" + kSimulated), 2, "--mode: is for a sensor or a recording");
   expect_refused(plvo("live --fx 500 --fy 500" + kSimulated), 2, "is for a sensor or a recording");
   expect_refused(plvo("live --every-frame" + kSimulated), 2,

@@ -29,12 +29,12 @@ class CliLiveWheels : public test::PlvoCommand {
   static std::string recording() {
     static const test::TemporaryFolder folder;
     static const bool made = [] {
-      const auto result = plvo("simulate --quiet --out " + (folder / "walk").string() + ' ' + kRobot);
+      const auto result = plvo("simulate --quiet --out " + (folder / "sequence").string() + ' ' + kRobot);
       EXPECT_EQ(result.exit_code, 0) << result.err;
       return true;
     }();
     EXPECT_TRUE(made);
-    return (folder / "walk").string();
+    return (folder / "sequence").string();
   }
   static std::string wheels() { return recording() + "/wheel_odometry.txt"; }
   static std::vector<std::string> lines() {

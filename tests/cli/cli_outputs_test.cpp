@@ -31,41 +31,41 @@ const fs::path& short_recording() { return test::simulated_sequence<kShortFrames
 
 class CliOutputs : public test::PlvoCommand {
  protected:
-  CliOutputs() { fs::copy(short_recording(), folder_ / "walk", fs::copy_options::recursive); }
-  CommandResult run(const std::string& more) const { return plvo("run " + path("walk") + ' ' + more); }
+  CliOutputs() { fs::copy(short_recording(), folder_ / "sequence", fs::copy_options::recursive); }
+  CommandResult run(const std::string& more) const { return plvo("run " + path("sequence") + ' ' + more); }
   void expect_refused(const CommandResult& r, const std::string& words) const {
     PlvoCommand::expect_refused(r, 2, words);
   }
   static std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
   fs::path first_image(const char* kind) const {
-    return fs::directory_iterator(folder_ / "walk" / kind)->path();
+    return fs::directory_iterator(folder_ / "sequence" / kind)->path();
   }
 };
 
 TEST_F(CliOutputs, NoOutputOverwritesAnInput) {
-  const std::string truth = read_file(folder_ / "walk/groundtruth.txt");
-  fs::create_symlink(folder_ / "walk/groundtruth.txt", folder_ / "link");
-  fs::create_hard_link(folder_ / "walk/groundtruth.txt", folder_ / "hard");
+  const std::string truth = read_file(folder_ / "sequence/groundtruth.txt");
+  fs::create_symlink(folder_ / "sequence/groundtruth.txt", folder_ / "link");
+  fs::create_hard_link(folder_ / "sequence/groundtruth.txt", folder_ / "hard");
   for (const std::string& name :
-       {path("walk/groundtruth.txt"), path("walk/../walk/./groundtruth.txt"), path("link"), path("hard"),
-        first_image("rgb").string(), path("walk/calibration.txt")}) {
+       {path("sequence/groundtruth.txt"), path("sequence/../sequence/./groundtruth.txt"), path("link"),
+        path("hard"), first_image("rgb").string(), path("sequence/calibration.txt")}) {
     for (const char* option : {"--out ", "--covariance ", "--motions ", "--stats ", "--json ", "--report "})
       expect_refused(run(option + name), "is an input, which would be overwritten; choose another name");
-    EXPECT_EQ(read_file(folder_ / "walk/groundtruth.txt"), truth);
+    EXPECT_EQ(read_file(folder_ / "sequence/groundtruth.txt"), truth);
   }
   // Paths relative to the working directory.
-  expect_refused(run_command("cd " + path("walk") + " && " + kPlvo + " run . --out rgb.txt"),
+  expect_refused(run_command("cd " + path("sequence") + " && " + kPlvo + " run . --out rgb.txt"),
                  "--out: rgb.txt is");
-  expect_refused(run("--overlay " + path("walk/rgb")), "holds inputs, which could be overwritten");
+  expect_refused(run("--overlay " + path("sequence/rgb")), "holds inputs, which could be overwritten");
   write_file(folder_ / "c.txt", "131 131 79.5 59.5 5000\n");
   expect_refused(run("--calibration " + path("c.txt") + " --out " + path("c.txt")), "is an input");
   // A result in the folder of the sequence is no input.
-  EXPECT_EQ(run("--quiet --out " + path("walk/estimate.txt")).exit_code, 0);
-  EXPECT_EQ(run("--quiet --out " + path("walk/estimate.txt")).exit_code, 0);
+  EXPECT_EQ(run("--quiet --out " + path("sequence/estimate.txt")).exit_code, 0);
+  EXPECT_EQ(run("--quiet --out " + path("sequence/estimate.txt")).exit_code, 0);
 }
 
 TEST_F(CliOutputs, OtherCommandsKeepTheirInputs) {
-  const std::string truth = path("walk/groundtruth.txt");
+  const std::string truth = path("sequence/groundtruth.txt");
   const std::string before = read_file(truth);
   const std::string eval = kPlvo + " eval --gt " + truth + " --est " + truth;
   expect_refused(run_command(eval + " --report " + truth), "--report: ");
@@ -75,10 +75,12 @@ TEST_F(CliOutputs, OtherCommandsKeepTheirInputs) {
   expect_refused(plvo("simulate --scene bare --size 96x64 --frames 1 --trajectory " +
                       path("new/groundtruth.txt") + " --out " + path("new")),
                  "is an input");
-  write_file(folder_ / "walk.oni", "mine");
-  expect_refused(plvo("live --device " + path("walk.oni") + " --out " + path("walk.oni")), "is an input");
-  expect_refused(plvo("run " + path("walk.oni") + " --stats " + path("walk.oni")), "is an input");
-  expect_refused(plvo("record " + path("walk.oni") + " --device " + path("walk.oni")), "is an input");
+  write_file(folder_ / "recording.oni", "mine");
+  expect_refused(plvo("live --device " + path("recording.oni") + " --out " + path("recording.oni")),
+                 "is an input");
+  expect_refused(plvo("run " + path("recording.oni") + " --stats " + path("recording.oni")), "is an input");
+  expect_refused(plvo("record " + path("recording.oni") + " --device " + path("recording.oni")),
+                 "is an input");
   fs::create_directory(folder_ / "half");
   write_file(folder_ / "half/calibration.txt", "131 131 79.5 59.5 5000\n");
   expect_refused(plvo("record " + path("half") + " --calibration " + path("half/calibration.txt")),
@@ -87,12 +89,13 @@ TEST_F(CliOutputs, OtherCommandsKeepTheirInputs) {
                       path("half/calibration.txt")),
                  "is an input");
   EXPECT_EQ(read_file(truth), before);
-  EXPECT_EQ(read_file(folder_ / "walk.oni"), "mine");
+  EXPECT_EQ(read_file(folder_ / "recording.oni"), "mine");
 }
 
 TEST_F(CliOutputs, TwoOutputsNeedTwoFiles) {
   expect_refused(run("--out " + path("a") + " --stats " + path("a")), "is already written by --out");
-  expect_refused(run("--out " + path("a") + " --json " + path("walk/../a")), "is already written by --out");
+  expect_refused(run("--out " + path("a") + " --json " + path("sequence/../a")),
+                 "is already written by --out");
   fs::create_symlink("a", folder_ / "link");  // the target does not exist yet
   expect_refused(run("--out " + path("a") + " --report " + path("link")), "is already written by --out");
   expect_refused(run("--out - --stats /dev/stdout"), "standard output is already written by --out");
@@ -128,7 +131,7 @@ TEST_F(CliOutputs, StandardOutputCarriesOneOutput) {
   // Appending to an existing file must not truncate it.
   write_file(folder_ / "log", "before\n");
   EXPECT_EQ(
-      run_command("sh -c '" + kPlvo + " run " + path("walk") + " --quiet --out - >>" + path("log") + "'")
+      run_command("sh -c '" + kPlvo + " run " + path("sequence") + " --quiet --out - >>" + path("log") + "'")
           .exit_code,
       0);
   EXPECT_EQ(read_file(folder_ / "log"), "before\n" + expected);
@@ -154,7 +157,7 @@ TEST_F(CliOutputs, FilesStateTheirReferenceFrames) {
       << header("m");
   // Readers treat this line as a comment.
   const CommandResult read_back =
-      plvo("eval --gt " + path("walk/groundtruth.txt") + " --est " + path("t") + " --est-covariance " +
+      plvo("eval --gt " + path("sequence/groundtruth.txt") + " --est " + path("t") + " --est-covariance " +
            path("c") + " --est-motions " + path("m") + " --json -");
   ASSERT_EQ(read_back.exit_code, 0) << read_back.err;
   EXPECT_TRUE(nlohmann::json::parse(read_back.out).contains("nees_motion"));
@@ -221,7 +224,7 @@ TEST_F(CliOutputs, PosesOfTheRobotsBase) {
     write_file(folder_ / to, text);
   };
   moved("camera.t", "moved.t", T_base_camera.inverse());
-  moved("walk/groundtruth.txt", "truth.t", T_base_camera.inverse());
+  moved("sequence/groundtruth.txt", "truth.t", T_base_camera.inverse());
   const auto eval = [&](const std::string& truth, const std::string& name) {
     const CommandResult e =
         plvo("eval --gt " + path(truth) + " --est " + path(name + ".t") + " --est-covariance " +
@@ -231,7 +234,7 @@ TEST_F(CliOutputs, PosesOfTheRobotsBase) {
   };
   EXPECT_LT(eval("moved.t", "base")["ate_m"]["max"], 5e-9) << "but for the decimals of the files";
   const auto of_base = eval("truth.t", "base");
-  const auto of_camera = eval("walk/groundtruth.txt", "camera");
+  const auto of_camera = eval("sequence/groundtruth.txt", "camera");
   for (const char* nees : {"nees_motion", "nees_pose"}) {
     const double expected = of_camera[nees]["mean"];
     EXPECT_GT(expected, 0.1);
@@ -255,7 +258,7 @@ TEST_F(CliOutputs, AccelerometerLevelsTheWorld) {
   };
   ASSERT_EQ(run("--quiet --imu --level --out " + path("t")).exit_code, 0);
   EXPECT_NE(read_file(folder_ / "t").find("turned level: gravity along y"), std::string::npos);
-  const auto truth = read("walk/groundtruth.txt"), level = read("t");
+  const auto truth = read("sequence/groundtruth.txt"), level = read("t");
   const Vector3 up(0, 0, 1);
   for (std::size_t i = 0; i < kShortFrames; ++i) {
     const Vector3 down = level[i].T_world_camera.R * truth[i].T_world_camera.R.transpose() * -up;
@@ -275,7 +278,7 @@ TEST_F(CliOutputs, AccelerometerLevelsTheWorld) {
     EXPECT_LT(((base[i].T_world_camera.t - base[0].T_world_camera.t).norm()), 0.2);
   }
   expect_refused(run("--level --out " + path("t")), "--level: is by the accelerometer of --imu");
-  fs::remove(folder_ / "walk/accelerometer.txt");
+  fs::remove(folder_ / "sequence/accelerometer.txt");
   const CommandResult none = run("--imu --level --out " + path("t"));
   EXPECT_EQ(none.exit_code, 1);
   EXPECT_NE(none.err.find("without an accelerometer nothing says where down is"), std::string::npos)
@@ -287,7 +290,7 @@ TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
   ASSERT_EQ(run("--quiet --out " + path("whole")).exit_code, 0);
   ImageDecoder decoder;
   std::vector<std::uint16_t> whole(160 * 120), half(80 * 60);
-  for (const auto& entry : fs::directory_iterator(folder_ / "walk/depth")) {
+  for (const auto& entry : fs::directory_iterator(folder_ / "sequence/depth")) {
     ASSERT_TRUE(decoder.decode_depth(entry.path(), 160, 120, whole).ok());
     for (std::size_t i = 0; i < half.size(); ++i) half[i] = whole[2 * (i / 80) * 160 + 2 * (i % 80)];
     ASSERT_TRUE(write_png(entry.path(), DepthView{half.data(), 80, 60, 80, 0.0002}).ok());
@@ -297,10 +300,10 @@ TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
   EXPECT_NE(refused.err.find("colour is 160x120 but depth is 80x60; export colour at the size of depth"),
             std::string::npos)
       << refused.err;
-  const std::string colour = read_file(folder_ / "walk/calibration.txt");
+  const std::string colour = read_file(folder_ / "sequence/calibration.txt");
   for (const char* said :
        {"width 160\nheight 120\n", "depth_fx 65.625\ndepth_fy 65.625\ndepth_cx 39.75\ndepth_cy 29.75\n"}) {
-    write_file(folder_ / "walk/calibration.txt", colour + "\n" + said);
+    write_file(folder_ / "sequence/calibration.txt", colour + "\n" + said);
     const CommandResult r = run("--quiet --out " + path("half"));
     ASSERT_EQ(r.exit_code, 0) << r.err;
     const CommandResult e = plvo("eval --gt " + path("whole") + " --est " + path("half") + " --json -");
@@ -319,10 +322,10 @@ TEST_F(CliOutputs, WarnsOfAMissingRotationToOpticalAxes) {
 }
 
 TEST_F(CliOutputs, FailedWriteToStandardOutputIsAnError) {
-  const std::string truth = path("walk/groundtruth.txt");
+  const std::string truth = path("sequence/groundtruth.txt");
   for (const std::string& words :
-       {"run " + path("walk"), "run " + path("walk") + " --quiet --out -",
-        "run " + path("walk") + " --quiet --json -", "eval --gt " + truth + " --est " + truth,
+       {"run " + path("sequence"), "run " + path("sequence") + " --quiet --out -",
+        "run " + path("sequence") + " --quiet --json -", "eval --gt " + truth + " --est " + truth,
         "eval --json - --gt " + truth + " --est " + truth,
         "simulate --scene bare --size 96x64 --frames 1 --out " + path("one"), std::string("--help"),
         std::string("run --help"), std::string("--version")}) {
@@ -337,9 +340,10 @@ TEST_F(CliOutputs, FailedWriteToStandardOutputIsAnError) {
 
 TEST_F(CliOutputs, ClosedStandardOutputDoesNotEndUpInAFile) {
   ASSERT_EQ(run("--quiet --out " + path("t.txt")).exit_code, 0);
-  EXPECT_EQ(run_command("sh -c '" + kPlvo + " run " + path("walk") + " --out " + path("u.txt") + " >&- 2>&-'")
-                .exit_code,
-            1);
+  EXPECT_EQ(
+      run_command("sh -c '" + kPlvo + " run " + path("sequence") + " --out " + path("u.txt") + " >&- 2>&-'")
+          .exit_code,
+      1);
   EXPECT_EQ(read_file(folder_ / "u.txt"), read_file(folder_ / "t.txt"));
 }
 
@@ -363,7 +367,7 @@ TEST_F(CliOutputs, UnwritableOutputsAreFoundBeforeTheFirstFrame) {
 }
 
 TEST_F(CliOutputs, ASequenceThatCannotBeTrackedIsRefusedBeforeTheFirstFrame) {
-  write_file(folder_ / "walk/calibration.txt", "131 131 79.5 59.5 0.001\n");
+  write_file(folder_ / "sequence/calibration.txt", "131 131 79.5 59.5 0.001\n");
   CommandResult r = run("--out " + path("t.txt"));
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_NE(r.err.find("depth"), std::string::npos) << r.err;
@@ -371,7 +375,7 @@ TEST_F(CliOutputs, ASequenceThatCannotBeTrackedIsRefusedBeforeTheFirstFrame) {
 }
 
 TEST_F(CliOutputs, AssumptionsAreReportedAtTheStart) {
-  write_file(folder_ / "walk/calibration.txt", "131 131 79.5 59.5 5000\n");
+  write_file(folder_ / "sequence/calibration.txt", "131 131 79.5 59.5 5000\n");
   CommandResult r = run("--quiet");
   EXPECT_EQ(r.exit_code, 0) << r.err;
   EXPECT_NE(r.err.find("a global shutter is assumed"), std::string::npos) << r.err;
@@ -382,13 +386,13 @@ TEST_F(CliOutputs, AssumptionsAreReportedAtTheStart) {
   EXPECT_EQ(run("--quiet --fx 131 --fy 131 --cx 79.5 --cy 59.5 --readout 0 --depth-scale 5000").err, "");
   // Without a calibration, a recording's name in TUM's scheme determines the camera; a similar name is a
   // hint.
-  fs::remove(folder_ / "walk/calibration.txt");
-  fs::rename(folder_ / "walk", folder_ / "fr1_walk");
-  r = plvo("run " + path("fr1_walk") + " --quiet");
+  fs::remove(folder_ / "sequence/calibration.txt");
+  fs::rename(folder_ / "sequence", folder_ / "fr1_sequence");
+  r = plvo("run " + path("fr1_sequence") + " --quiet");
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_NE(r.err.find("as its name may say: --camera-model tum-fr1"), std::string::npos) << r.err;
-  fs::rename(folder_ / "fr1_walk", folder_ / "rgbd_dataset_freiburg1_walk");
-  r = plvo("run " + path("rgbd_dataset_freiburg1_walk") + " --quiet");
+  fs::rename(folder_ / "fr1_sequence", folder_ / "rgbd_dataset_freiburg1_sequence");
+  r = plvo("run " + path("rgbd_dataset_freiburg1_sequence") + " --quiet");
   EXPECT_NE(r.err.find("640x480"), std::string::npos) << "the guess does not fit these images: " << r.err;
 }
 
@@ -402,7 +406,7 @@ TEST_F(CliOutputs, SequenceOfOneFrameIsNoFailure) {
 
 TEST_F(CliOutputs, LossesAreCountedByKind) {
   const std::vector<std::uint16_t> none(160 * 120, 0);
-  for (const auto& entry : fs::directory_iterator(folder_ / "walk/depth"))
+  for (const auto& entry : fs::directory_iterator(folder_ / "sequence/depth"))
     ASSERT_TRUE(write_png(entry.path(), DepthView{none.data(), 160, 120, 160, 0.0002}).ok());
   const CommandResult r = run("--json " + path("j"));
   EXPECT_EQ(r.exit_code, 3);
@@ -433,13 +437,13 @@ TEST_F(CliOutputs, FaultsOfTheDataAreReportedOnce) {
   said("--depth-scale 1000", "times the true ones");
   said("--depth-scale 40000", "no depth lies beyond");
   // The ground truth has another clock or belongs to another recording.
-  const std::string truth = read_file(folder_ / "walk/groundtruth.txt");
-  write_file(folder_ / "walk/groundtruth.txt", "9000 0 0 0 0 0 0 1\n9001 0 0 0 0 0 0 1\n");
+  const std::string truth = read_file(folder_ / "sequence/groundtruth.txt");
+  write_file(folder_ / "sequence/groundtruth.txt", "9000 0 0 0 0 0 0 1\n9001 0 0 0 0 0 0 1\n");
   said("", "no comparison: only 0 of ");
   said("", "one recording, one clock?");
-  write_file(folder_ / "walk/groundtruth.txt", truth);
+  write_file(folder_ / "sequence/groundtruth.txt", truth);
   const std::vector<std::uint16_t> none(160 * 120, 0);
-  for (const auto& entry : fs::directory_iterator(folder_ / "walk/depth"))
+  for (const auto& entry : fs::directory_iterator(folder_ / "sequence/depth"))
     ASSERT_TRUE(write_png(entry.path(), DepthView{none.data(), 160, 120, 160, 0.0002}).ok());
   said("", "the depth images are empty");
 }
@@ -491,7 +495,7 @@ TEST_F(CliOutputs, KittiTimesMustMatchTheirRows) {
   const CommandResult more = run_command(kitti + path("more"));
   EXPECT_EQ(more.exit_code, 1);
   EXPECT_NE(more.err.find("11 stamps"), std::string::npos) << more.err;
-  const std::string truth = path("walk/groundtruth.txt");
+  const std::string truth = path("sequence/groundtruth.txt");
   const CommandResult tum =
       plvo("eval --gt " + truth + " --est " + truth + " --kitti-times " + path("times"));
   EXPECT_EQ(tum.exit_code, 2);

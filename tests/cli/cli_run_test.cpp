@@ -40,7 +40,7 @@ const fs::path& master_sequence() { return test::simulated_sequence<kFrames>(); 
 
 class CliRun : public test::PlvoCommand {
  protected:
-  CliRun() : sequence_(folder_ / "walk") {
+  CliRun() : sequence_(folder_ / "sequence") {
     fs::copy(master_sequence(), sequence_, fs::copy_options::recursive);
   }
 

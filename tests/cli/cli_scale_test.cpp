@@ -81,23 +81,24 @@ TEST_F(CliScale, RecordingOfTwiceTheSizeGivesThePosesOfTheSmallOne) {
 }
 
 TEST_F(CliScale, ReductionRestoresMagnifiedImages) {
-  simulate("walk", "--scene bare --frames 4 --size 80x64");
-  ASSERT_EQ(run("walk", "--quiet --out " + path("a") + " --covariance " + path("ca")).exit_code, 0);
-  const std::string calibration = read_file(folder_ / "walk/calibration.txt");
-  magnify("walk", 4);
-  write_file(folder_ / "walk/calibration.txt", "262.5 262.5 159.5 127.5 5000\nreadout_s 0\n");
+  simulate("sequence", "--scene bare --frames 4 --size 80x64");
+  ASSERT_EQ(run("sequence", "--quiet --out " + path("a") + " --covariance " + path("ca")).exit_code, 0);
+  const std::string calibration = read_file(folder_ / "sequence/calibration.txt");
+  magnify("sequence", 4);
+  write_file(folder_ / "sequence/calibration.txt", "262.5 262.5 159.5 127.5 5000\nreadout_s 0\n");
   ASSERT_EQ(calibration.rfind("65.625 65.625 39.5 31.5 5000", 0), 0u) << calibration;
-  ASSERT_EQ(run("walk", "--scale 4 --quiet --out " + path("b") + " --covariance " + path("cb")).exit_code, 0);
+  ASSERT_EQ(run("sequence", "--scale 4 --quiet --out " + path("b") + " --covariance " + path("cb")).exit_code,
+            0);
   EXPECT_EQ(read_file(folder_ / "a"), read_file(folder_ / "b"));
   EXPECT_EQ(read_file(folder_ / "ca"), read_file(folder_ / "cb"));
 }
 
 TEST_F(CliScale, ImagesAboveTheLimitAreReducedWithAMessage) {
-  simulate("walk", "--scene bare --frames 3 --size 80x64");
-  ASSERT_EQ(run("walk", "--quiet --out " + path("a")).exit_code, 0);
-  magnify("walk", 26);  // 2080×1664
-  write_file(folder_ / "walk/calibration.txt", "1706.25 1706.25 1039.5 831.5 5000\nreadout_s 0\n");
-  const CommandResult r = run("walk", "--frames 2 --out " + path("b"));
+  simulate("sequence", "--scene bare --frames 3 --size 80x64");
+  ASSERT_EQ(run("sequence", "--quiet --out " + path("a")).exit_code, 0);
+  magnify("sequence", 26);  // 2080×1664
+  write_file(folder_ / "sequence/calibration.txt", "1706.25 1706.25 1039.5 831.5 5000\nreadout_s 0\n");
+  const CommandResult r = run("sequence", "--frames 2 --out " + path("b"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_NE(r.err.find("warning: the images of 2080x1664 are larger than plvo takes: they are scaled down by "
                        "2, to 1040x832, and the calibration with them"),
@@ -105,22 +106,22 @@ TEST_F(CliScale, ImagesAboveTheLimitAreReducedWithAMessage) {
       << r.err;
   EXPECT_NE(r.out.find("images                 1040x832, scaled down by 2\n"), std::string::npos) << r.out;
   // With a scale down to the original size the limit has no effect.
-  ASSERT_EQ(run("walk", "--scale 13 --quiet --out " + path("c")).exit_code, 0);
-  const CommandResult as_large = run("walk", "--scale 1");
+  ASSERT_EQ(run("sequence", "--scale 13 --quiet --out " + path("c")).exit_code, 0);
+  const CommandResult as_large = run("sequence", "--scale 1");
   EXPECT_EQ(as_large.exit_code, 2);
   EXPECT_NE(as_large.err.find("--scale: images of 2080x1664 scaled down by 1 are 2080x1664, and plvo takes "
                               "64x64 to 2047x2047"),
             std::string::npos)
       << as_large.err;
   fs::create_directory(folder_ / "out");
-  const CommandResult calibrate = plvo("calibrate " + path("walk") + " --out " + path("out/c.yaml"));
+  const CommandResult calibrate = plvo("calibrate " + path("sequence") + " --out " + path("out/c.yaml"));
   EXPECT_EQ(calibrate.exit_code, 1);
   EXPECT_NE(calibrate.err.find("record a smaller mode"), std::string::npos) << calibrate.err;
 }
 
 TEST_F(CliScale, TooLargeFactorIsRefused) {
-  simulate("walk", "--scene bare --frames 2 --size 160x120");
-  const CommandResult r = run("walk", "--scale 2 --out " + path("t"));
+  simulate("sequence", "--scene bare --frames 2 --size 160x120");
+  const CommandResult r = run("sequence", "--scale 2 --out " + path("t"));
   EXPECT_EQ(r.exit_code, 2);
   EXPECT_NE(r.err.find("--scale: images of 160x120 scaled down by 2 are 80x60, and plvo takes 64x64"),
             std::string::npos)

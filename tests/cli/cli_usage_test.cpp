@@ -184,9 +184,9 @@ TEST(CliUsage, WrongUsageIsFoundBeforeASensorIsOpened) {
 TEST(CliUsage, OutputsAreTestedBeforeASensorIsOpened) {
   const TemporaryFolder folder;
   const auto at = [&folder](const std::string& name) { return (folder / name).string(); };
-  std::filesystem::create_directory(folder / "walk");
-  test::write_file(folder / "walk/depth.txt", "mine");
-  test::write_file(folder / "walk.oni", "mine");
+  std::filesystem::create_directory(folder / "sequence");
+  test::write_file(folder / "sequence/depth.txt", "mine");
+  test::write_file(folder / "recording.oni", "mine");
   test::write_file(folder / "poses.txt", "mine");
   const auto expect_refused = [](const std::string& arguments, const std::string& words) {
     const CommandResult r = run_plvo(arguments);
@@ -194,8 +194,8 @@ TEST(CliUsage, OutputsAreTestedBeforeASensorIsOpened) {
     EXPECT_NE(r.err.find(words), std::string::npos) << arguments << ": " << r.err;
   };
   for (const char* command : {"record ", "live --record "}) {
-    expect_refused(command + at("walk"), "holds a recording already");
-    expect_refused(command + at("walk.oni"), "exists already");
+    expect_refused(command + at("sequence"), "holds a recording already");
+    expect_refused(command + at("recording.oni"), "exists already");
     expect_refused(command + at("no/such/folder"), "cannot make the folder");
     expect_refused(command + at("poses.txt"), "it is a file");
     expect_refused(command + at("no/such.oni"), "cannot create " + at("no/such.oni"));
@@ -275,8 +275,8 @@ TEST(CliUsage, SameFlagHasTheSameMeaning) {
 
 TEST(CliUsage, SameFlagHasTheSameEffect) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
-  const std::string recording = (folder / "walk").string();
+  ASSERT_TRUE(test::write_tiny_sequence(folder / "sequence", 5).ok());
+  const std::string recording = (folder / "sequence").string();
   // --frames N: the first N; --json FILE, and - for standard output, whatever the command.
   const CommandResult first = run_plvo("run " + recording + " --frames 2 --quiet --json -");
   const CommandResult range = run_plvo("run " + recording + " --frames 0:2 --quiet --json -");

@@ -19,12 +19,12 @@ class CliWheels : public test::PlvoCommand {
     static const bool made = [] {
       const auto result =
           plvo("simulate --robot --scene hall --size 320x240 --frames 45 --covered 15:30 --quiet --out " +
-               (folder / "walk").string());
+               (folder / "sequence").string());
       EXPECT_EQ(result.exit_code, 0) << result.err;
       return true;
     }();
     EXPECT_TRUE(made);
-    return (folder / "walk").string();
+    return (folder / "sequence").string();
   }
   static std::string wheels() { return recording() + "/wheel_odometry.txt"; }
   nlohmann::json summary(const std::string& options) const {

@@ -20,17 +20,17 @@ PAGES = [ROOT / "README.md", *(page for page in sorted((ROOT / "docs/user").glob
 # Commands of plvo that another test runs: those that need a sensor, which that test simulates, or a recording of another kind.
 IN_A_TEST = {
     "plvo record DIR": "cli_record_test",
-    "plvo record walk": "cli_record_test",
+    "plvo record sequence": "cli_record_test",
     "plvo record turns --seconds 30": "cli_record_test",
     "plvo calibrate turns --out camera.yaml --report curves.html": "cli_calibrate_test",
-    "plvo run walk --calibration camera.yaml": "cli_calibrate_test",
+    "plvo run sequence --calibration camera.yaml": "cli_calibrate_test",
     "plvo live --imu": "simulated_kinect_imu_test",
     "plvo tilt -10 --led green": "cli_tilt_test",
     "plvo live --device freenect://1-1.3": "cli_live_test",
-    "plvo info walk.mcap": "ros_recordings_test",
-    "plvo info walk.mcap --json -": "ros_recordings_test",
-    "plvo convert walk.mcap --out walk": "ros_recordings_test",
-    "plvo convert walk.mcap --out walk --imu": "ros_recordings_test",
+    "plvo info recording.mcap": "ros_recordings_test",
+    "plvo info recording.mcap --json -": "ros_recordings_test",
+    "plvo convert recording.mcap --out sequence": "ros_recordings_test",
+    "plvo convert recording.mcap --out sequence --imu": "ros_recordings_test",
 }
 # What begins with these words is in no test of the suite.
 REASONS = {
@@ -51,7 +51,7 @@ REASONS = {
     "git clone https://github.com/OpenKinect/libfreenect2.git": "it downloads",
     "cmake -S . -B build -DBUILD_OPENNI2_DRIVER=ON": "of a library that is not here",
     "cc -std=c11 track_folder.c": "architecture_install compiles that program by pkg-config",
-    "./track_folder walk": "c_sequence_test runs that program",
+    "./track_folder sequence": "c_sequence_test runs that program",
     "python3 -m venv --system-site-packages env": "python_pip_test does the same without an index",
 }
 
@@ -99,10 +99,10 @@ def folder(tmp_path_factory):
     (programs / "your_program").write_text("#!/bin/sh\nexec wc -l\n")
     for program in programs.iterdir():
         program.chmod(0o755)
-    for name, frames, size in (("DIR", 8, "640x480"), ("walk", 12, "320x240"), ("monday", 12, "320x240"), ("tuesday", 12, "320x240")):
+    for name, frames, size in (("DIR", 8, "640x480"), ("sequence", 12, "320x240"), ("monday", 12, "320x240"), ("tuesday", 12, "320x240")):
         subprocess.run([PLVO, "simulate", "--frames", str(frames), "--size", size, "--quiet", "--out", name], cwd=folder, check=True)
     for name in ("plvo.txt", "other.txt", "third.txt"):
-        subprocess.run([PLVO, "run", "walk", "--quiet", "--out", name], cwd=folder, check=True)
+        subprocess.run([PLVO, "run", "sequence", "--quiet", "--out", name], cwd=folder, check=True)
     subprocess.run([PLVO, "run", "monday", "--map", "256", "--map-out", "home.map", "--quiet"], cwd=folder, check=True)
     return folder
 
@@ -118,7 +118,7 @@ def adapted(command):
                 command += f" {option} {value}"
     if words[1] == "simulate" or "--frames 100" in command:
         command = command.replace("--frames 100", "--frames 12 --size 320x240")
-    return re.sub(r"--record walk\b|--out walk\b", lambda found: found[0].replace("walk", "new"), command)
+    return re.sub(r"--record sequence\b|--out sequence\b", lambda found: found[0].replace("sequence", "new"), command)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -187,20 +187,20 @@ TEST_F(CliLiveFaults, HeartbeatOfThePoseStreamNamesTheCameraState) {
 
 TEST_F(CliLiveFaults, DiskFullWhileRecordingEndsTheRecordingAlone) {
   // The size limit of a file is 8 KiB: black images fit, a test pattern does not.
-  start("live --stats " + path("s.csv") + " --record " + path("walk") + " --json " + path("j.json"),
+  start("live --stats " + path("s.csv") + " --record " + path("sequence") + " --json " + path("j.json"),
         device("dark 1;zero_depth 1"), "ulimit -f 16; ");
-  EXPECT_TRUE(comes_true([&] { return lines_in(read_file(path("walk/rgb.txt"))) >= 8; })) << err();
+  EXPECT_TRUE(comes_true([&] { return lines_in(read_file(path("sequence/rgb.txt"))) >= 8; })) << err();
   tell_device("dark 0");
   tell_device("zero_depth 0");
   EXPECT_TRUE(says("plvo: error: the recording ends here, what was written is whole: cannot write")) << err();
   wait_for_rows(rows() + 5);
   EXPECT_TRUE(reaches("tracking")) << "the odometry went on";
   EXPECT_EQ(interrupt(), 1) << err();
-  const long listed = lines_in(read_file(path("walk/rgb.txt"))) - 1;
+  const long listed = lines_in(read_file(path("sequence/rgb.txt"))) - 1;
   EXPECT_GE(listed, 7);
   EXPECT_EQ(summary()["recording"]["frames"], listed);
-  EXPECT_EQ(lines_in(read_file(path("walk/depth.txt"))) - 1, listed);
-  const auto replay = plvo("run " + path("walk") + " --json " + path("r.json"));
+  EXPECT_EQ(lines_in(read_file(path("sequence/depth.txt"))) - 1, listed);
+  const auto replay = plvo("run " + path("sequence") + " --json " + path("r.json"));
   EXPECT_EQ(replay.exit_code, 3) << "dark frames, all of them readable: " << replay.err;
   EXPECT_EQ(nlohmann::json::parse(read_file(path("r.json")))["frames"], listed);
   EXPECT_EQ(nlohmann::json::parse(read_file(path("r.json")))["damaged"], 0);

@@ -12,8 +12,9 @@ class CliLiveSignals : public LiveCommand {
  protected:
   void start_live(const std::string& before = "") {
     start("live --every-frame --out " + path("t.txt") + " --stats " + path("s.csv") + " --covariance " +
-              path("c.txt") + " --json " + path("j.json") + " --record " + path("walk") + " --stream unix:" +
-              path("poses") + " --map 32 --map-out " + path("m.map") + " --map-trajectory " + path("m.txt"),
+              path("c.txt") + " --json " + path("j.json") + " --record " + path("sequence") +
+              " --stream unix:" + path("poses") + " --map 32 --map-out " + path("m.map") +
+              " --map-trajectory " + path("m.txt"),
           "", before);
     EXPECT_TRUE(frames_reach(10)) << err();
   }
@@ -40,9 +41,9 @@ class CliLiveSignals : public LiveCommand {
   }
   // All files that the recording lists exist and are readable.
   void expect_whole_recording(long frames) const {
-    EXPECT_EQ(lines_in(read_file(path("walk/rgb.txt"))), frames + 1);
-    EXPECT_EQ(lines_in(read_file(path("walk/depth.txt"))), frames + 1);
-    const auto replay = plvo("run " + path("walk") + " --json " + path("r.json"));
+    EXPECT_EQ(lines_in(read_file(path("sequence/rgb.txt"))), frames + 1);
+    EXPECT_EQ(lines_in(read_file(path("sequence/depth.txt"))), frames + 1);
+    const auto replay = plvo("run " + path("sequence") + " --json " + path("r.json"));
     EXPECT_EQ(replay.exit_code, 0) << replay.err;
     const nlohmann::json json = nlohmann::json::parse(read_file(path("r.json")));
     EXPECT_EQ(json["frames"], frames);
@@ -86,12 +87,12 @@ TEST_F(CliLiveSignals, NohupIgnoresHangup) {
 
 TEST_F(CliLiveSignals, RecordLeavesCompleteFiles) {
   for (const int signal : {SIGHUP, SIGTERM}) {
-    std::filesystem::remove_all(path("walk"));
-    start("record " + path("walk"));
-    EXPECT_TRUE(comes_true([&] { return lines_in(read_file(path("walk/depth.txt"))) > 10; })) << err();
+    std::filesystem::remove_all(path("sequence"));
+    start("record " + path("sequence"));
+    EXPECT_TRUE(comes_true([&] { return lines_in(read_file(path("sequence/depth.txt"))) > 10; })) << err();
     send(signal);
     EXPECT_EQ(wait(), 0) << err();
-    expect_whole_recording(lines_in(read_file(path("walk/rgb.txt"))) - 1);
+    expect_whole_recording(lines_in(read_file(path("sequence/rgb.txt"))) - 1);
   }
 }
 

@@ -18,10 +18,10 @@ const std::string kSmall = "--mode 320x240 ";
 
 class CliLive : public LiveCommand {
  protected:
-  // The same 12 simulated frames for the device (raw) and as a folder (walk).
+  // The same 12 simulated frames for the device (raw) and as a folder (sequence).
   void make_recording() {
-    const CommandResult made =
-        run_command(std::string(PLVO_VIRTUAL_FRAMES_BINARY) + ' ' + path("raw") + ' ' + path("walk") + " 12");
+    const CommandResult made = run_command(std::string(PLVO_VIRTUAL_FRAMES_BINARY) + ' ' + path("raw") + ' ' +
+                                           path("sequence") + " 12");
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   std::string files(const std::string& name) const {
@@ -31,7 +31,7 @@ class CliLive : public LiveCommand {
   // Runs live on the 12 frames. The device shows each frame when the pose of the previous one has been
   // written, so none is lost, whatever the load of the machine. The poses go to standard output.
   int live_over_recording(const std::string& arguments) {
-    start("live " + kSmall + "--calibration " + path("walk/calibration.txt") +
+    start("live " + kSmall + "--calibration " + path("sequence/calibration.txt") +
               " --every-frame --frames 12 --stream - " + arguments,
           device("allow 1", path("raw")));
     for (long pose = 1; pose < 12; ++pose) {
@@ -56,7 +56,7 @@ class CliLive : public LiveCommand {
 
 TEST_F(CliLive, GivesTheSamePosesAsRunOnTheSameFramesFromFiles) {
   make_recording();
-  ASSERT_EQ(plvo("run " + path("walk") + files("files")).exit_code, 0);
+  ASSERT_EQ(plvo("run " + path("sequence") + files("files")).exit_code, 0);
   ASSERT_EQ(live_over_recording("--record " + path("again") + files("live")), 0) << err();
   expect_same("files", "live", 12);
   // The recording of the session gives the same poses again.
@@ -67,7 +67,7 @@ TEST_F(CliLive, GivesTheSamePosesAsRunOnTheSameFramesFromFiles) {
 TEST_F(CliLive, PosesOfTheRobotsBaseAreThoseOfRun) {
   make_recording();
   const std::string place = " --base-camera 0.2 -0.1 0.5 -0.5 0.5 -0.5 0.5";
-  ASSERT_EQ(plvo("run " + path("walk") + files("files") + place).exit_code, 0);
+  ASSERT_EQ(plvo("run " + path("sequence") + files("files") + place).exit_code, 0);
   ASSERT_EQ(live_over_recording(files("live") + place), 0) << err();
   expect_same("files", "live", 12);
   std::istringstream stream(out());
@@ -97,10 +97,10 @@ TEST_F(CliLive, PosesOfTheRobotsBaseAreThoseOfRun) {
 // Depth as a camera beside that of colour sees it.
 TEST_F(CliLive, RegistersDepthOfAnotherCameraAsRunDoes) {
   make_recording();
-  ASSERT_EQ(plvo("run " + path("walk") + files("as_one")).exit_code, 0);
-  const std::string calibration = read_file(path("walk/calibration.txt"));
-  plvo::test::write_file(path("walk/calibration.txt"), calibration + "depth_tx 0.015\n");
-  ASSERT_EQ(plvo("run " + path("walk") + files("files")).exit_code, 0);
+  ASSERT_EQ(plvo("run " + path("sequence") + files("as_one")).exit_code, 0);
+  const std::string calibration = read_file(path("sequence/calibration.txt"));
+  plvo::test::write_file(path("sequence/calibration.txt"), calibration + "depth_tx 0.015\n");
+  ASSERT_EQ(plvo("run " + path("sequence") + files("files")).exit_code, 0);
   EXPECT_NE(read_file(path("files.txt")), read_file(path("as_one.txt")));
   ASSERT_EQ(live_over_recording("--record " + path("again") + files("live")), 0) << err();
   expect_same("files", "live", 12);

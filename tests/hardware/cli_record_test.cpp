@@ -50,16 +50,16 @@ class CliRecord : public LiveCommand {
 };
 
 TEST_F(CliRecord, WritesAFolderWithTheGivenNumberOfFrames) {
-  const CommandResult r = plvo("record " + path("walk") + " --frames 12 --mode 320x240");
+  const CommandResult r = plvo("record " + path("sequence") + " --frames 12 --mode 320x240");
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_TRUE(contains(r.out, "12 frames in")) << r.out;
   EXPECT_TRUE(contains(r.out, "next: plvo run ")) << r.out;
-  EXPECT_EQ(listed(path("walk")), 12);
-  EXPECT_EQ(playable(path("walk")), 12);
+  EXPECT_EQ(listed(path("sequence")), 12);
+  EXPECT_EQ(playable(path("sequence")), 12);
 }
 
 TEST_F(CliRecord, CtrlCLeavesCompleteFiles) {
-  for (const std::string name : {"walk", "walk.oni"}) {
+  for (const std::string name : {"sequence", "recording.oni"}) {
     start("record " + path(name));
     ASSERT_TRUE(says("Ctrl-C ends")) << err();
     wait_for_bytes(path(name));
@@ -71,12 +71,12 @@ TEST_F(CliRecord, CtrlCLeavesCompleteFiles) {
 }
 
 TEST_F(CliRecord, UnplugEndsAnOniFileButNotAFolder) {
-  for (const std::string name : {"walk.oni", "walk"}) {
+  for (const std::string name : {"recording.oni", "sequence"}) {
     start("record " + path(name));
     ASSERT_TRUE(says("Ctrl-C ends")) << err();
     wait_for_bytes(path(name));
     tell_device("unplug");
-    if (name == "walk.oni") {
+    if (name == "recording.oni") {
       EXPECT_EQ(wait(), 4) << err();
       EXPECT_TRUE(contains(err(), "it is complete so far")) << err();
     } else {
@@ -93,15 +93,15 @@ TEST_F(CliRecord, UnplugEndsAnOniFileButNotAFolder) {
 }
 
 TEST_F(CliRecord, ExistingFilesAreNotOverwritten) {
-  std::filesystem::create_directory(path("walk"));
-  plvo::test::write_file(path("walk/rgb.txt"), "mine");
+  std::filesystem::create_directory(path("sequence"));
+  plvo::test::write_file(path("sequence/rgb.txt"), "mine");
   plvo::test::write_file(path("mine.oni"), "mine");
-  for (const std::string name : {"walk", "mine.oni"}) {
+  for (const std::string name : {"sequence", "mine.oni"}) {
     const CommandResult r = plvo("record " + path(name), device("unplug"));
     EXPECT_EQ(r.exit_code, 1) << "told before a sensor is missed";
     EXPECT_TRUE(contains(r.err, "remove it or choose another")) << r.err;
   }
-  EXPECT_EQ(read_file(path("walk/rgb.txt")), "mine");
+  EXPECT_EQ(read_file(path("sequence/rgb.txt")), "mine");
   EXPECT_EQ(read_file(path("mine.oni")), "mine");
   EXPECT_EQ(plvo("record").exit_code, 2);
   EXPECT_EQ(plvo("record " + path("x"), device("unplug")).exit_code, 4);
@@ -110,37 +110,37 @@ TEST_F(CliRecord, ExistingFilesAreNotOverwritten) {
 
 TEST_F(CliRecord, FullDiskEndsTheRecordingWithAdviceAndACompleteFolder) {
   if (!small_disk("400k")) GTEST_SKIP() << "this user may not mount a small disk";
-  const CommandResult r = plvo("record " + path("disk/walk") + " --seconds 20 --mode 320x240");
+  const CommandResult r = plvo("record " + path("disk/sequence") + " --seconds 20 --mode 320x240");
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_TRUE(contains(r.err, "No space left on device; free some space or choose another disk")) << r.err;
-  const long frames = listed(path("disk/walk"));
+  const long frames = listed(path("disk/sequence"));
   EXPECT_GE(frames, 3);
-  EXPECT_EQ(playable(path("disk/walk")), frames);
+  EXPECT_EQ(playable(path("disk/sequence")), frames);
   EXPECT_TRUE(contains(r.out, std::to_string(frames) + " frames in")) << r.out;
 }
 
 TEST_F(CliRecord, AlmostFullDiskLeavesAPlayableOniFile) {
   if (!small_disk("80m")) GTEST_SKIP() << "this user may not mount a small disk";
-  const CommandResult r = plvo("record " + path("disk/walk.oni") + " --seconds 20");
+  const CommandResult r = plvo("record " + path("disk/recording.oni") + " --seconds 20");
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_TRUE(contains(r.err, "the disk is almost full")) << r.err;
-  EXPECT_GE(playable(path("disk/walk.oni")), 2);
+  EXPECT_GE(playable(path("disk/recording.oni")), 2);
 }
 
 TEST_F(CliRecord, ALimitOnTheSizeOfFilesEndsItInWholeFiles) {
   const auto record = [&](const std::string& limit, const std::string& words) {
     return run_command("prlimit --fsize=" + limit + ' ' + kPlvo + " record " + words);
   };
-  const CommandResult folder = record("3000", path("walk") + " --seconds 20");  // less than an image
+  const CommandResult folder = record("3000", path("sequence") + " --seconds 20");  // less than an image
   EXPECT_EQ(folder.exit_code, 1);
   EXPECT_TRUE(contains(folder.err, "File too large; raise the limit on the size of files (ulimit -f)"))
       << folder.err;
-  EXPECT_EQ(listed(path("walk")), 0);
-  EXPECT_TRUE(std::filesystem::is_empty(path("walk/rgb")));
-  const CommandResult oni = record("80000000", path("walk.oni") + " --seconds 20");
+  EXPECT_EQ(listed(path("sequence")), 0);
+  EXPECT_TRUE(std::filesystem::is_empty(path("sequence/rgb")));
+  const CommandResult oni = record("80000000", path("recording.oni") + " --seconds 20");
   EXPECT_EQ(oni.exit_code, 1);
   EXPECT_TRUE(contains(oni.err, "the limit on the size of files is almost reached")) << oni.err;
-  EXPECT_GE(playable(path("walk.oni")), 2);
+  EXPECT_GE(playable(path("recording.oni")), 2);
 }
 
 TEST_F(CliRecord, DoctorChecksTheFrames) {

@@ -207,7 +207,7 @@ def main():
         print("SKIPPED: no Chromium here (apt install chromium)")
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="plvo_live_") as folder:
-        raw, recording, control, log, summary = (os.path.join(folder, n) for n in ("raw", "walk", "control", "log", "summary.json"))
+        raw, recording, control, log, summary = (os.path.join(folder, n) for n in ("raw", "sequence", "control", "log", "summary.json"))
         subprocess.run([frames_maker, raw, recording, str(FRAMES)], check=True)
         os.mkfifo(control)
         environment = dict(os.environ, LD_LIBRARY_PATH=openni2, PLVO_VIRTUAL_FRAMES=raw, PLVO_VIRTUAL_CONTROL=control,

@@ -189,18 +189,18 @@ TEST_F(KinectImu, RecordKeepsWhatItReads) {
   kinect_.plug();
   SimulatedMotor motor(kinect_, [] { return kTilted; });
   motor.plug();
-  ASSERT_EQ(plvo({"record", path("walk"), "--imu", "--frames", "30", "--quiet"}), 0) << err_;
+  ASSERT_EQ(plvo({"record", path("sequence"), "--imu", "--frames", "30", "--quiet"}), 0) << err_;
   plvo::ImuRecording kept;
-  const plvo::Status status = plvo::read_imu_files(path("walk"), kept);
+  const plvo::Status status = plvo::read_imu_files(path("sequence"), kept);
   ASSERT_TRUE(status.ok()) << status.message();
   EXPECT_TRUE(kept.gyro.empty());
   EXPECT_EQ(kept.ignored, 0U);
   ASSERT_GT(kept.accelerometer.size(), 20U);
   EXPECT_NEAR(kept.accelerometer[3].value.y(), 655 * 9.80665 / 819, 1e-12);
   EXPECT_NEAR(kept.accelerometer[3].value.z(), 491 * 9.80665 / 819, 1e-12);
-  EXPECT_NE(read_file(path("walk/accelerometer.txt")).find("--imu-axes x,-y,z"), std::string::npos);
+  EXPECT_NE(read_file(path("sequence/accelerometer.txt")).find("--imu-axes x,-y,z"), std::string::npos);
   // The readings are recorded with the frames, on the same clock.
-  std::istringstream rows(read_file(path("walk/rgb.txt")));
+  std::istringstream rows(read_file(path("sequence/rgb.txt")));
   std::string row;
   std::getline(rows, row);
   std::getline(rows, row);
@@ -208,7 +208,7 @@ TEST_F(KinectImu, RecordKeepsWhatItReads) {
   const double first_reading = static_cast<double>(kept.accelerometer.front().stamp_ns) * 1e-9;
   EXPECT_LT(std::abs(first_reading - first_frame), 2.0);
   tracked.clear();
-  ASSERT_EQ(plvo({"run", path("walk"), "--imu", "--imu-axes", "x,-y,z", "--readout", "0", "--quiet"}), 0)
+  ASSERT_EQ(plvo({"run", path("sequence"), "--imu", "--imu-axes", "x,-y,z", "--readout", "0", "--quiet"}), 0)
       << err_;
   EXPECT_GE(with_gravity(), 20);
   EXPECT_LT((tracked.back().prior.gravity->down.normalized() - plvo::Vector3(0, 0.8, -0.6)).norm(), 2e-3);

@@ -97,11 +97,11 @@ TEST_F(KinectCommand, RecordKeepsEveryByte) {
   kinect_.plug();
   Reference reference;
   ASSERT_TRUE(reference.take());
-  ASSERT_EQ(plvo({"record", path("walk"), "--frames", "6", "--quiet"}), 0) << err_;
+  ASSERT_EQ(plvo({"record", path("sequence"), "--frames", "6", "--quiet"}), 0) << err_;
   plvo::Calibration calibration;
-  ASSERT_TRUE(plvo::read_calibration(path("walk/calibration.txt"), calibration).ok());
+  ASSERT_TRUE(plvo::read_calibration(path("sequence/calibration.txt"), calibration).ok());
   plvo::RecordedCamera camera;
-  ASSERT_TRUE(camera.open(path("walk"), calibration).ok());
+  ASSERT_TRUE(camera.open(path("sequence"), calibration).ok());
   plvo::RgbdFrame frame;
   int frames = 0;
   for (; camera.next(frame).ok(); ++frames) {

@@ -13,8 +13,8 @@ namespace {
 constexpr std::int64_t kStep_ns = 1'000'000;
 
 // One axis of a velocity in steps of a millisecond; its means over two intervals of the same length.
-struct Walk {
-  Walk(test::Gaussian& gaussian, int steps) {
+struct SimulatedVelocity {
+  SimulatedVelocity(test::Gaussian& gaussian, int steps) {
     double velocity = 0;
     for (int i = 0; i < steps; ++i) before += (velocity += gaussian()) / steps;
     between = velocity;
@@ -37,9 +37,9 @@ double best_share(int steps, const True& truth) {
   test::Gaussian gaussian(5);
   double product = 0, square = 0;
   for (int trial = 0; trial < 20'000; ++trial) {
-    const Walk walk(gaussian, steps);
-    const double difference = walk.after - walk.before;
-    product += (truth(walk) - walk.after) * difference;
+    const SimulatedVelocity velocity(gaussian, steps);
+    const double difference = velocity.after - velocity.before;
+    product += (truth(velocity) - velocity.after) * difference;
     square += difference * difference;
   }
   return product / square;
@@ -49,9 +49,9 @@ TEST(MotionModel, EstimatesOfARandomWalkHaveTheLeastError) {
   constexpr int kSteps = 60;
   const Velocity a = along_x(0, kSteps), b = along_x(1, kSteps);
   EXPECT_NEAR(velocity_at_exposure(b, a)[0] - 1,
-              best_share(kSteps, [](const Walk& walk) { return walk.end; }), 0.02);
+              best_share(kSteps, [](const SimulatedVelocity& v) { return v.end; }), 0.02);
   EXPECT_NEAR(velocity_between(a, b)[0] - 1,
-              best_share(kSteps, [](const Walk& walk) { return walk.between; }), 0.02);
+              best_share(kSteps, [](const SimulatedVelocity& v) { return v.between; }), 0.02);
 }
 
 TEST(MotionModel, UsesTheOneVelocityThatIsKnown) {

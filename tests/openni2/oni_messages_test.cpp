@@ -19,7 +19,7 @@ OniRecording small() {
   OniRecording recording;
   recording.colour = {4, 3, 30, ImageFormat::kRgb888, 1.0, 0.8, false};
   recording.depth = {4, 3, 30, ImageFormat::kDepth1Mm, 1.1, 0.9, true};
-  recording.info = {"walk.oni", "PrimeSense", "oni\x1b[31m File", 0, 0};
+  recording.info = {"recording.oni", "PrimeSense", "oni\x1b[31m File", 0, 0};
   recording.frames = 7;
   return recording;
 }

@@ -13,6 +13,6 @@ PLVO = os.environ["PLVO_BINARY"]
 
 @pytest.fixture(scope="session")
 def recording(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("recorded") / "walk"
+    folder = tmp_path_factory.mktemp("recorded") / "sequence"
     subprocess.run([PLVO, "simulate", "--out", folder, "--frames", "24", "--size", "320x240", "--quiet"], check=True)
     return folder

@@ -19,7 +19,7 @@ def write_bag(recording, file, prefix="", *imu):
 
 @pytest.fixture(scope="module")
 def bag(recording, tmp_path_factory):
-    return write_bag(recording, tmp_path_factory.mktemp("bag") / "walk.bag", "", "imu")
+    return write_bag(recording, tmp_path_factory.mktemp("bag") / "recording.bag", "", "imu")
 
 
 def assert_same(results, expected):
@@ -90,10 +90,10 @@ def test_topics_by_name(recording, tmp_path):
 @pytest.mark.filterwarnings("ignore:the calibration does not say")
 def test_true_poses_lie_beside_the_bag(recording, bag, tmp_path):
     results = list(plvo.run(bag))
-    with pytest.raises(plvo.Error, match="put the true ones beside it, as walk-groundtruth.txt"):
+    with pytest.raises(plvo.Error, match="put the true ones beside it, as recording-groundtruth.txt"):
         plvo.evaluate(bag, results)
-    (tmp_path / "walk-groundtruth.txt").write_bytes((recording / "groundtruth.txt").read_bytes())
-    assert plvo.evaluate(tmp_path / "walk.bag", results) == plvo.evaluate(recording / "groundtruth.txt", results)
+    (tmp_path / "recording-groundtruth.txt").write_bytes((recording / "groundtruth.txt").read_bytes())
+    assert plvo.evaluate(tmp_path / "recording.bag", results) == plvo.evaluate(recording / "groundtruth.txt", results)
 
 
 def test_what_is_no_bag_is_refused(tmp_path):

@@ -20,7 +20,7 @@ def test_the_page_has_programs():
 def test_a_program_of_the_page(program, recording, tmp_path):
     if "matplotlib" in program:
         pytest.importorskip("matplotlib", reason="sudo apt install python3-matplotlib")
-    (tmp_path / "walk").symlink_to(recording)
+    (tmp_path / "sequence").symlink_to(recording)
     run = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True,
                          env={**os.environ, "MPLBACKEND": "Agg", "MPLCONFIGDIR": str(tmp_path)})
     assert run.returncode == 0, run.stderr

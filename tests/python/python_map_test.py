@@ -44,9 +44,9 @@ def test_a_loaded_map_does_not_know_where_the_camera_is_until_it_sees_a_place(re
     room = plvo.Map(sequence.camera, keyframes=8)
     mapped(sequence, room)
     room.settle()
-    room.save(tmp_path / "walk.map")
+    room.save(tmp_path / "room.map")
     again = plvo.Map(sequence.camera, keyframes=8)
-    again.load(tmp_path / "walk.map")
+    again.load(tmp_path / "room.map")
     assert again.keyframes == room.keyframes
     sequence = plvo.Sequence(recording)
     odometry = plvo.Odometry(sequence.camera)

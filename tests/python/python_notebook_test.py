@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The cells of docs/user/walk.ipynb run one after the other, as a notebook runs them, and draw what it promises."""
+"""The cells of docs/user/sequence.ipynb run one after the other, as a notebook runs them, and draw what it promises."""
 import json
 import os
 import pathlib
@@ -9,7 +9,7 @@ import pytest
 
 matplotlib = pytest.importorskip("matplotlib", reason="sudo apt install python3-matplotlib")
 
-NOTEBOOK = json.loads((pathlib.Path(os.environ["PLVO_PAGE"]).parent / "walk.ipynb").read_text())
+NOTEBOOK = json.loads((pathlib.Path(os.environ["PLVO_PAGE"]).parent / "sequence.ipynb").read_text())
 
 
 def test_it_is_a_notebook_without_outputs():
@@ -28,7 +28,7 @@ def test_its_cells_run_in_their_order(tmp_path, monkeypatch):
     names, pictures = {}, []
     for cell in NOTEBOOK["cells"]:
         if cell["cell_type"] == "code":
-            exec(compile("".join(cell["source"]), "walk.ipynb", "exec"), names)
+            exec(compile("".join(cell["source"]), "sequence.ipynb", "exec"), names)
         for number in pyplot.get_fignums():
             figure = pyplot.figure(number)
             figure.savefig(f"{len(pictures)}.png")

@@ -223,7 +223,7 @@ def test_a_dark_frame_is_lost_and_the_next_one_goes_on(recording):
 
 
 def test_a_damaged_image_costs_its_frame(recording, tmp_path):
-    copy = tmp_path / "walk"
+    copy = tmp_path / "sequence"
     subprocess.run(["cp", "-r", recording, copy], check=True)
     sorted((copy / "depth").iterdir())[3].write_bytes(b"no picture")
     with pytest.warns(RuntimeWarning, match="depth"):
@@ -274,7 +274,7 @@ def test_images_above_the_limit_are_scaled_down(recording, tmp_path):
 
 
 def test_data_that_look_wrong_are_warned_of(recording, tmp_path):
-    copy = tmp_path / "walk"
+    copy = tmp_path / "sequence"
     subprocess.run(["cp", "-r", recording, copy], check=True)
     for image in (copy / "depth").iterdir():
         image.write_bytes(png(np.zeros((240, 320), np.uint16)))

@@ -14,7 +14,7 @@ PLVO = os.environ["PLVO_BINARY"]
 @pytest.fixture(scope="module")
 def covered(tmp_path_factory):
     """A sequence with a hand over the lens for five frames."""
-    folder = tmp_path_factory.mktemp("covered") / "walk"
+    folder = tmp_path_factory.mktemp("covered") / "sequence"
     subprocess.run(
         [PLVO, "simulate", "--out", folder, "--scene", "desk", "--size", "320x240", "--frames", "24", "--covered", "12:17",
          "--quiet"],

@@ -110,26 +110,26 @@ TEST_F(SequenceCalibration, ReportsWhatPlainTumNumbersOmit) {
     EXPECT_TRUE(read_calibration(folder_ / "calibration.txt", calibration_).ok()) << numbers;
     return missing_of_tum(folder_ / name, calibration_);
   };
-  const std::string all = missing("walk", "517.3 516.5 318.6 255.3 5000");
+  const std::string all = missing("sequence", "517.3 516.5 318.6 255.3 5000");
   EXPECT_TRUE(has_text(all, "by its numbers this is TUM's camera tum-fr1")) << all;
   EXPECT_TRUE(has_text(all,
                        "does not say: the lens, the rolling shutter, when depth is exposed, the "
                        "errors of the stamps; --camera-model tum-fr1 says it"))
       << all;
-  const std::string lens =
-      missing("walk", "517.306408 516.469215 318.643040 255.313989 5000 0.262 -0.953 -0.005 0.0026 1.163");
+  const std::string lens = missing(
+      "sequence", "517.306408 516.469215 318.643040 255.313989 5000 0.262 -0.953 -0.005 0.0026 1.163");
   EXPECT_TRUE(has_text(lens, "does not say: the rolling shutter, when depth is exposed, the errors")) << lens;
-  EXPECT_TRUE(has_text(missing("walk", "520.9 521.0 325.1 249.7"), "tum-fr2"));
-  EXPECT_TRUE(has_text(missing("walk", "535.4 539.2 320.1 247.6 5000"), "tum-fr3"));
+  EXPECT_TRUE(has_text(missing("sequence", "520.9 521.0 325.1 249.7"), "tum-fr2"));
+  EXPECT_TRUE(has_text(missing("sequence", "535.4 539.2 320.1 247.6 5000"), "tum-fr3"));
   // The driver's numbers identify no camera, but the name of the recording does; so does that of a bag.
   for (const char* name : {"rgbd_dataset_freiburg1_desk", "rgbd_dataset_freiburg1_desk.bag"})
     EXPECT_TRUE(
         has_text(missing(name, "525 525 319.5 239.5 5000"), "by its name this is TUM's camera tum-fr1"));
   EXPECT_EQ(missing("fr1_desk", "525 525 319.5 239.5 5000"), "") << "a name like it is none of TUM's";
-  EXPECT_EQ(missing("walk", "518 516.5 318.6 255.3 5000"), "");
+  EXPECT_EQ(missing("sequence", "518 516.5 318.6 255.3 5000"), "");
   for (const char* model : {"tum-fr1", "tum-fr2", "tum-fr3"}) {
     ASSERT_TRUE(builtin_calibration(model, calibration_).ok());
-    EXPECT_EQ(missing_of_tum("walk", calibration_), "") << model;
+    EXPECT_EQ(missing_of_tum("sequence", calibration_), "") << model;
   }
 }
 

@@ -122,9 +122,9 @@ TEST(TumIndex, ByteOrderMarks) {
 
 TEST(TumIndex, ExplainsHowToPlayAnOniFile) {
   const TemporaryFolder folder;
-  write_file(folder / "walk.oni", "NI10");
+  write_file(folder / "recording.oni", "NI10");
   SequenceIndex index;
-  const Status status = read_sequence_index(folder / "walk.oni", {}, index);
+  const Status status = read_sequence_index(folder / "recording.oni", {}, index);
   EXPECT_EQ(status.code(), StatusCode::kUnsupported);
   EXPECT_TRUE(says(status, "plvo live --device ")) << status.message();
 }

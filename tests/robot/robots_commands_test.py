@@ -19,7 +19,7 @@ BLOCKS = blocks(PAGE)
 PLVO = os.environ["PLVO_BINARY"]
 
 # The blocks, by their first words.
-HERE = ("plvo live --base-camera", "plvo run walk --wheels", "mkfifo wheels")
+HERE = ("plvo live --base-camera", "plvo run sequence --wheels", "mkfifo wheels")
 PACKAGES = "sudo apt install libroscpp-dev"  # those of tools/setup/packages.sh
 BLOCKS_OF_TESTS = {  # the test, and the programs that both have
     "roscore &": ("ros1_node_test", ("roscore", "roslaunch", "rosbag")),
@@ -39,7 +39,7 @@ IN_THE_TEXT = {
     "plvo live --imu": "simulated_kinect_imu_test",
     "plvo run --wheels": "cli_wheels_test",
     "your_robot | plvo live --wheels - …": "cli_live_wheels_test",
-    "plvo convert FILE --out walk --wheels-topic /odom": "ros_recordings_test",
+    "plvo convert FILE --out sequence --wheels-topic /odom": "ros_recordings_test",
     "plvo simulate --robot": "cli_wheels_test",
 }
 IN_NO_TEST = {
@@ -90,10 +90,10 @@ def folder(tmp_path):
     programs.mkdir()
     sim = "--camera sim --robot --scene hall --size 320x240 --frames 12 --quiet --json live.json"
     (programs / "plvo").write_text(f'#!/bin/sh\n[ "$1" = live ] || exec {PLVO} "$@" --quiet\nexec {PLVO} "$@" {sim}\n')
-    (programs / "your_robot").write_text("#!/bin/sh\nexec cat walk/wheel_odometry.txt\n")
+    (programs / "your_robot").write_text("#!/bin/sh\nexec cat sequence/wheel_odometry.txt\n")
     for program in programs.iterdir():
         program.chmod(0o755)
-    subprocess.run([PLVO, "simulate", *sim.split()[2:-3], "--quiet", "--out", "walk"], cwd=tmp_path, check=True)
+    subprocess.run([PLVO, "simulate", *sim.split()[2:-3], "--quiet", "--out", "sequence"], cwd=tmp_path, check=True)
     return tmp_path
 
 

@@ -60,10 +60,10 @@ class RosRecordings(unittest.TestCase):
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.base = pathlib.Path(cls.scratch.name)
-        made = plvo("simulate", "--scene", "bare", "--size", "160x120", "--seed", "3", "--quiet", "--frames", "6", "--out", cls.base / "walk")
+        made = plvo("simulate", "--scene", "bare", "--size", "160x120", "--seed", "3", "--quiet", "--frames", "6", "--out", cls.base / "sequence")
         assert made.returncode == 0, made.stderr
-        cls.recording = Recording(cls.base / "walk")
-        cls.poses = cls.poses_of(cls, cls.base / "walk")
+        cls.recording = Recording(cls.base / "sequence")
+        cls.poses = cls.poses_of(cls, cls.base / "sequence")
 
     @classmethod
     def tearDownClass(cls):
@@ -147,7 +147,7 @@ class RosRecordings(unittest.TestCase):
         for kind, write in (("db3", containers.write_db3), ("mcap", containers.write_mcap)):
             folder = self.folder / kind
             folder.mkdir()
-            names = [f"walk_{i}.{kind}" for i in range(len(parts))]
+            names = [f"recording_{i}.{kind}" for i in range(len(parts))]
             for name, part in zip(names, parts):
                 write(folder / name, part)
             self.expect_equal(folder)
@@ -156,12 +156,12 @@ class RosRecordings(unittest.TestCase):
             for name in names:
                 subprocess.run(["zstd", "-q", "--rm", folder / name, "-o", folder / f"{name}.zstd"], check=True)
             self.expect_equal(folder)
-            (folder / f"walk_7.{kind}.zstd").unlink()
-            self.assertIn(f"after walk_6.{kind}.zstd comes walk_8.{kind}.zstd: is a file between them missing?", plvo("run", folder).stderr)
+            (folder / f"recording_7.{kind}.zstd").unlink()
+            self.assertIn(f"after recording_6.{kind}.zstd comes recording_8.{kind}.zstd: is a file between them missing?", plvo("run", folder).stderr)
             if kind == "mcap":
-                (folder / "walk_11.mcap.zstd").write_bytes(b"no zstd")
+                (folder / "recording_11.mcap.zstd").write_bytes(b"no zstd")
                 self.assertIn("a file is left out", plvo("run", folder).stderr)
-                shutil.copy(self.folder / "db3" / "walk_0.db3.zstd", folder)
+                shutil.copy(self.folder / "db3" / "recording_0.db3.zstd", folder)
                 self.assertIn("has both .db3 and .mcap files", plvo("run", folder).stderr)
 
     def test_packed_files_and_files_beside_images(self):
@@ -191,9 +191,9 @@ class RosRecordings(unittest.TestCase):
         self.assertIn("/compressedDepth (compressedDepth of the format rvl is not read; png is)", plvo("run", file).stderr)
 
     def test_inputs_are_not_overwritten(self):
-        folder = self.folder / "walk"
+        folder = self.folder / "sequence"
         folder.mkdir()
-        file = folder / "walk_0.db3"
+        file = folder / "recording_0.db3"
         containers.write_db3(file, self.messages("cdr_le"))
         for command in (("info", folder, "--json", file), ("info", file, "--json", file), ("run", folder, "--out", file),
                         ("eval", "--gt", folder, "--est", "e", "--json", file), ("convert", folder, "--out", file),

@@ -19,9 +19,9 @@ const std::filesystem::path& simulated_sequence() {
   static const std::filesystem::path sequence = [] {
     const CommandResult made =
         run_command(kPlvo + " simulate --scene bare --size 160x120 --seed 3 --quiet --frames " +
-                    std::to_string(kFrames) + " --out " + (folder / "walk").string());
+                    std::to_string(kFrames) + " --out " + (folder / "sequence").string());
     EXPECT_EQ(made.exit_code, 0) << made.err;
-    return folder / "walk";
+    return folder / "sequence";
   }();
   return sequence;
 }

@@ -33,8 +33,8 @@ MANWIDTH=200 man plvo plvo-live | grep -o '^ *\(/usr\|/etc\)/[^ ,]*' | while rea
 
 step "command line"
 plvo --version >&2
-plvo simulate --out walk --frames 20 --size 320x240 --quiet
-plvo run walk --quiet --out run.txt
+plvo simulate --out sequence --frames 20 --size 320x240 --quiet
+plvo run sequence --quiet --out run.txt
 grep -v '^#' run.txt | cut -d' ' -f2- >run.poses
 echo "no bag" >no.bag
 if plvo run no.bag 2>no.bag.words; then exit 1; fi
@@ -46,16 +46,16 @@ test -s "/usr/$(grep -o 'share/doc/plvo/[a-z_/]*\.md' no.mcap.words)"  # the pag
 step "C, by pkg-config: the same poses"
 # shellcheck disable=SC2046  # a list of words
 gcc -std=c11 -Wall track_folder.c $(pkg-config --cflags --libs plvo) -o track_folder
-./track_folder walk | cut -d' ' -f2- | cmp - run.poses
+./track_folder sequence | cut -d' ' -f2- | cmp - run.poses
 if ./track_folder no.bag 2>no.bag.words; then exit 1; fi
 grep -q "is not a ROS 1 bag" no.bag.words
 
 step "C, with the gyro and the accelerometer of the recording: the poses of plvo run --imu"
-plvo run walk --imu --quiet --out imu.txt
+plvo run sequence --imu --quiet --out imu.txt
 # shellcheck disable=SC2046
 gcc -std=c11 -Wall track_with_imu.c $(pkg-config --cflags --libs plvo) -o track_with_imu
 grep -v '^#' imu.txt | cut -d' ' -f2- >imu.poses
-./track_with_imu walk | cut -d' ' -f2- | cmp - imu.poses
+./track_with_imu sequence | cut -d' ' -f2- | cmp - imu.poses
 
 step "C++, by find_package and by pkg-config"
 cmake -S consumer -B consumer-build >/dev/null
@@ -74,7 +74,7 @@ assert len(programs) >= 3
 for program in programs:
     exec(compile(program, "docs/user/python.md", "exec"), {})
 import plvo
-poses = [" ".join(f"{x:.9f}" for x in (*r.position, *r.quaternion)) for r in plvo.run("walk") if r.has_pose]
+poses = [" ".join(f"{x:.9f}" for x in (*r.position, *r.quaternion)) for r in plvo.run("sequence") if r.has_pose]
 assert poses == pathlib.Path("run.poses").read_text().splitlines()
 PROGRAM
 

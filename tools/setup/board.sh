@@ -32,10 +32,10 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 board=("$emulator" -L "$sysroot" -E "LD_LIBRARY_PATH=$PWD/build/$preset/tests/virtual_openni2")
 plvo=build/$preset/bin/plvo
-"${board[@]}" "build/$preset/tests/plvo_virtual_frames" "$work/raw" "$work/walk" 12 >&2
-"${board[@]}" "$plvo" run "$work/walk" --quiet --out "$work/files.txt" >&2
+"${board[@]}" "build/$preset/tests/plvo_virtual_frames" "$work/raw" "$work/sequence" 12 >&2
+"${board[@]}" "$plvo" run "$work/sequence" --quiet --out "$work/files.txt" >&2
 PLVO_VIRTUAL_START="pace 400000" PLVO_VIRTUAL_FRAMES="$work/raw" "${board[@]}" "$plvo" live --mode 320x240 \
-  --calibration "$work/walk/calibration.txt" --every-frame --frames 12 --quiet --out "$work/live.txt" >&2
+  --calibration "$work/sequence/calibration.txt" --every-frame --frames 12 --quiet --out "$work/live.txt" >&2
 cmp "$work/files.txt" "$work/live.txt"
 if [ "$(wc -l <"$work/live.txt")" -lt 13 ]; then
   say "the live sensor gave too few poses"

@@ -54,21 +54,21 @@ if [ $# -gt 0 ]; then
   if [ "$architecture" = arm64 ]; then emulator=qemu-aarch64; else emulator=qemu-arm; fi
   board=("$emulator" -L "$sysroot" -E "LD_LIBRARY_PATH=$work/usr/lib/$triplet")
   "${board[@]}" "$work/usr/bin/plvo" --version >&2
-  "${board[@]}" "$work/usr/bin/plvo" simulate --out "$work/walk" --frames 6 --size 320x240 --quiet
-  "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --quiet --out "$work/run.txt"
-  "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --imu --quiet --out "$work/imu.txt"
+  "${board[@]}" "$work/usr/bin/plvo" simulate --out "$work/sequence" --frames 6 --size 320x240 --quiet
+  "${board[@]}" "$work/usr/bin/plvo" run "$work/sequence" --quiet --out "$work/run.txt"
+  "${board[@]}" "$work/usr/bin/plvo" run "$work/sequence" --imu --quiet --out "$work/imu.txt"
   for program in 1:run 5:imu; do  # the two programs of the page; each must print the poses of the command line
     tools/setup/page_program.sh docs/user/c.md c "${program%:*}" >"$work/program.c"
     "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/program.c" -L"$work/usr/lib/$triplet" -lplvo \
       -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/program"
-    "${board[@]}" "$work/program" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
+    "${board[@]}" "$work/program" "$work/sequence" | cut -d' ' -f2- >"$work/c.poses"
     grep -v '^#' "$work/${program#*:}.txt" | cut -d' ' -f2- | cmp - "$work/c.poses"
   done
   say "the command line and two C programs with the shared library agree on $(wc -l <"$work/c.poses") poses each"
   python=("${board[@]}" -E "PYTHONHOME=$sysroot/usr" -E PYTHONDONTWRITEBYTECODE=1
     -E "PYTHONPATH=$work/usr/lib/python3/dist-packages:$sysroot/usr/lib/python3/dist-packages"
     -E "LD_LIBRARY_PATH=$work/usr/lib/$triplet:$sysroot/usr/lib/$triplet/blas:$sysroot/usr/lib/$triplet/lapack" "$sysroot/usr/bin/python3")
-  "${python[@]}" - "$work/walk" >"$work/python.poses" <<'PROGRAM'
+  "${python[@]}" - "$work/sequence" >"$work/python.poses" <<'PROGRAM'
 import sys
 import plvo
 for r in plvo.run(sys.argv[1]):

@@ -27,8 +27,8 @@ struct MovingBoard {
 struct WalkingPerson {
   double from_s = 0.65, to_s = 3.35;  // since the first frame
   double distance_m = 2;              // from the camera, at from_s
-  bool ahead = false;      // walks ahead at the camera's mean velocity instead of crossing the view
-  double speed_mps = 1.2;  // when crossing, from the left to the right
+  bool ahead = false;                 // goes ahead at the camera's mean velocity instead of crossing the view
+  double speed_mps = 1.2;             // when crossing, from the left to the right
 };
 
 struct Difficulties {

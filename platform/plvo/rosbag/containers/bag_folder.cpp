@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFiles = 500;  // all are open at once
 
-// The parts of walk_2.db3: walk_ and 2, without leading zeros.
+// The parts of recording_2.db3: recording_ and 2, without leading zeros.
 struct NumberedName {
   std::string before, digits, name;
 };
@@ -30,7 +30,7 @@ NumberedName numbered_name(const fs::path& path) {
   return {stem.substr(0, number), stem.substr(digits), name};
 }
 
-// walk_2.db3 comes before walk_10.db3: a shorter number is smaller.
+// recording_2.db3 comes before recording_10.db3: a shorter number is smaller.
 bool comes_before(const fs::path& a, const fs::path& b) {
   const NumberedName first = numbered_name(a), second = numbered_name(b);
   return std::tuple(first.before, first.digits.size(), first.digits, first.name) <

@@ -10,7 +10,7 @@ namespace plvo::sim {
 namespace {
 
 constexpr Float3 kUp{0, 0, 1};
-constexpr float kEyeHeight_m = 1.45F;  // of the camera over the floor on which the person walks
+constexpr float kEyeHeight_m = 1.45F;  // of the camera over the floor on which the person stands
 constexpr double kStrides_hz = 0.9;
 constexpr float kPanelHalfDepth_m = 0.01F;
 constexpr float kMirrorAhead_m = 2;

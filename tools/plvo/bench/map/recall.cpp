@@ -19,7 +19,7 @@ constexpr int kFramesOfTheSequence = 1800;
 // A sample is drawn evenly from each cell of distance, as a share of the scene's depth, and angle.
 constexpr std::array kShares = {0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0};
 constexpr std::array kAngles_deg = {0.0, 10.0, 20.0, 30.0, 45.0, 60.0};
-constexpr double kHeightShare = 0.3;  // of the other directions: people walk and robots roll
+constexpr double kHeightShare = 0.3;  // of the other directions: people and robots stay on the ground
 constexpr int kTriesPerPair = 20;     // to find a place where the camera can be
 
 // The keyframe that an odometry makes of a view.

@@ -41,7 +41,7 @@ constexpr const char* kHelp =
     "Examples:\n"
     "  plvo record turns && plvo calibrate turns --out camera.yaml\n"
     "  plvo calibrate desk hall --out camera.yaml           two recordings of one sensor\n"
-    "  plvo run walk --calibration camera.yaml              and so for live and record\n";
+    "  plvo run sequence --calibration camera.yaml          and so for live and record\n";
 
 struct CalibrateOptions {
   std::vector<std::string> recordings;

@@ -23,8 +23,8 @@ namespace {
 
 constexpr const char* kInfoHelp =
     "Examples:\n"
-    "  plvo info walk.mcap                   topics, rates, gaps, calibration, what run would take\n"
-    "  plvo info walk.mcap --json -          the same for programs\n"
+    "  plvo info recording.mcap              topics, rates, gaps, calibration, what run would take\n"
+    "  plvo info recording.mcap --json -     the same for programs\n"
     "\n"
     "The exit code says whether plvo run would start.\n";
 

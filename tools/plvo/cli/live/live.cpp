@@ -20,9 +20,9 @@ namespace {
 constexpr const char* kLiveHelp =
     "Examples:\n"
     "  plvo live --view 8080                      look at http://127.0.0.1:8080/ meanwhile\n"
-    "  plvo live --out poses.txt --record walk    keep the poses and the images\n"
+    "  plvo live --out poses.txt --record sequence   keep the poses and the images\n"
     "  plvo live --stream - | your_program        poses as JSON, one line a frame\n"
-    "  plvo live --device walk.oni --out t.txt    a recording, every frame of it; walk.bag, too\n"
+    "  plvo live --device recording.oni --out t.txt   a recording, every frame of it; recording.bag, too\n"
     "  plvo live --camera sim --size 320x240 --view 8080    no sensor needed\n"
     "  plvo live --map 256 --map-in home.map --map-out home.map    a map that grows from day to day\n"
     "  plvo live --imu                            a Kinect's accelerometer holds roll and pitch\n"

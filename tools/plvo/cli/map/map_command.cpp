@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kMapHelp =
     "Examples:\n"
-    "  plvo run walk --map 256 --map-out home.map\n"
+    "  plvo run sequence --map 256 --map-out home.map\n"
     "  plvo map home.map                     keyframes, points, lines, loops, extent, camera\n"
     "  plvo map home.map --json -            the same for programs\n";
 

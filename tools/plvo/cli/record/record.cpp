@@ -30,16 +30,19 @@ constexpr int kRingPatience_ms = 100;
 constexpr const char* kTruthFile = "groundtruth.txt";
 constexpr const char* kRecordHelp =
     "Examples:\n"
-    "  plvo record walk                      a new folder with PNG images; then: plvo run walk\n"
-    "  plvo record walk.oni --seconds 60     one file of OpenNI2; then: plvo run walk.oni\n"
-    "  plvo record walk --device walk.oni    the one from the other; plvo convert does the same\n"
+    "  plvo record sequence                               a new folder with PNG images; then: plvo run "
+    "sequence\n"
+    "  plvo record recording.oni --seconds 60              one file of OpenNI2; then: plvo run "
+    "recording.oni\n"
+    "  plvo record sequence --device recording.oni   the one from the other; plvo convert does the same\n"
     "\n"
     "Ctrl-C ends, and so does a full disk: what was written is whole and can be read.\n";
 
 constexpr const char* kConvertHelp =
     "Examples:\n"
-    "  plvo convert walk.mcap --out walk     a new folder with PNG images; then: plvo run walk\n"
-    "  plvo convert walk.bag --out walk --imu    with gyro and accelerometer\n"
+    "  plvo convert recording.mcap --out sequence        a new folder with PNG images; then: plvo run "
+    "sequence\n"
+    "  plvo convert recording.bag --out sequence --imu   with gyro and accelerometer\n"
     "\n"
     "The true poses of a recording of ROS become groundtruth.txt. plvo run reads such recordings as\n"
     "they are: convert makes folders for other programs.\n";

@@ -39,10 +39,10 @@ constexpr const char* kRunHelp =
     "Examples:\n"
     "  plvo run --camera sim --frames 100                   no sensor and no recording needed\n"
     "  plvo run DIR --camera-model tum-fr1 --out t.txt      a TUM recording of the fr1 series\n"
-    "  plvo run walk --report run.html                      what plvo record or plvo simulate made\n"
-    "  plvo run walk --map 256 --map-trajectory map.txt      places that come back correct the drift\n"
-    "  plvo run walk --imu                                  with the help of a gyro and an accelerometer\n"
-    "  plvo run walk --quiet --out - | your_program         the trajectory into a pipe\n";
+    "  plvo run sequence --report run.html                  what plvo record or plvo simulate made\n"
+    "  plvo run sequence --map 256 --map-trajectory map.txt   places that come back correct the drift\n"
+    "  plvo run sequence --imu                              with a gyro and an accelerometer\n"
+    "  plvo run sequence --quiet --out - | your_program     the trajectory into a pipe\n";
 
 struct RunOptions {
   CameraOptions camera;

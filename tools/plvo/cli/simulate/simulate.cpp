@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* kSimulateHelp =
     "Examples:\n"
-    "  plvo simulate --out walk                                   then: plvo run walk\n"
+    "  plvo simulate --out sequence                               then: plvo run sequence\n"
     "  plvo simulate --out dim --scene hall --light varying       a harder one\n";
 
 struct SimulateOptions {
