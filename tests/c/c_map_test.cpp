@@ -162,7 +162,7 @@ TEST_F(CMap, IsSavedAndLoadedThroughTheCallersFunctions) {
   EXPECT_EQ(plvo_map_keyframes(map_), 0U);
   tape.bytes.assign(100, 'x');
   tape.at = 0;
-  expect_says(plvo_map_load(map_, read_tape, &tape), PLVO_DAMAGED, "this is no map");
+  expect_says(plvo_map_load(map_, read_tape, &tape), PLVO_DAMAGED, "this is not a map");
 }
 
 TEST_F(CMap, TheFunctionsOfThePageSaveAndLoadAFile) {
@@ -196,7 +196,7 @@ TEST_F(CMap, InvalidArgumentsAreRefusedWithAMessage) {
   expect_says(plvo_map_update(map_, odometry_, nullptr, &in_map_), PLVO_INVALID_ARGUMENT, "result is NULL");
   expect_says(plvo_map_update(map_, odometry_, &result, nullptr), PLVO_INVALID_ARGUMENT,
               "map_result is NULL");
-  expect_says(plvo_map_update(map_, odometry_, &result, &in_map_), PLVO_INVALID_ARGUMENT, "no rotation");
+  expect_says(plvo_map_update(map_, odometry_, &result, &in_map_), PLVO_INVALID_ARGUMENT, "not a rotation");
   EXPECT_EQ(plvo_map_keyframes(nullptr) + plvo_map_loops(nullptr) + plvo_map_saved_bytes(nullptr), 0U);
   double T[12];
   EXPECT_EQ(plvo_map_keyframe_pose(nullptr, 1, T) + plvo_map_keyframe_pose(map_, 1, nullptr), 0);

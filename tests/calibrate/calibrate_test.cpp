@@ -223,7 +223,7 @@ TEST(TimingReport, ThePageShowsEveryCurveAndLoadsNothing) {
   for (std::size_t at = 0; (at = page.find("<polyline", at)) != page.npos; ++at) ++curves;
   EXPECT_EQ(curves, 3u);
   EXPECT_NE(page.find("-15.00 ms, SD 0.40 ms"), page.npos);
-  EXPECT_NE(page.find("not told by these recordings"), page.npos);
+  EXPECT_NE(page.find("not shown by these recordings"), page.npos);
   EXPECT_NE(page.find("a&lt;b"), page.npos);
   for (const char* loaded : {"http", "src=", "href=", "nan", "inf"})
     EXPECT_EQ(page.find(loaded), page.npos) << loaded;

@@ -158,7 +158,7 @@ TEST_F(CliBagCommands, RejectsOptionsThatDoNotApply) {
   expect_refused("record " + path("x.oni") + " --imu", 2, "--imu: an .oni file keeps no readings of it");
   expect_refused("record " + path("x") + " --imu --device recording.oni", 2,
                  "--imu: does not apply to an .oni file");
-  expect_refused("doctor" + device, 2, "--device: a ROS bag is no sensor");
+  expect_refused("doctor" + device, 2, "--device: a ROS bag is not a sensor");
   expect_refused("calibrate " + recorded_sequence().string() + " --depth-topic /x --out " + path("y"), 2,
                  "--depth-topic: is for a ROS bag");
   expect_refused("calibrate " + path("recording.bag") + " --depth-topic /x --out " + path("y"), 1,

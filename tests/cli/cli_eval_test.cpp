@@ -233,7 +233,7 @@ TEST_F(CliEvalFiles, RotatedAndLateTruthIsFitted) {
   EXPECT_NE(eval("--fit-truth").out.find("truth fitted to the estimate"), std::string::npos);
   const CommandResult nearest = eval("--fit-truth --gt-sampling nearest");
   EXPECT_EQ(nearest.exit_code, 2);
-  EXPECT_NE(nearest.err.find("leave --gt-sampling nearest away"), std::string::npos) << nearest.err;
+  EXPECT_NE(nearest.err.find("leave --gt-sampling nearest out"), std::string::npos) << nearest.err;
 }
 
 // The message names the option to use, as long as there is one.
@@ -374,7 +374,7 @@ TEST_F(CliEvalFiles, SeveralEstimatesAreRanked) {
        {"--report r.html", "--est-covariance c.txt", "--est-motions m.txt", "--fit-truth"}) {
     const CommandResult refused = run_plvo(more + ' ' + option);
     EXPECT_EQ(refused.exit_code, 2) << option;
-    EXPECT_NE(refused.err.find("leave it away"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("leave it out"), std::string::npos) << refused.err;
   }
   EXPECT_EQ(run_plvo(more + " --plot " + (folder_ / "est.txt").string()).exit_code, 2) << "an input";
   EXPECT_EQ(run_plvo(more + " --plot /nowhere/plot.svg").exit_code, 1);

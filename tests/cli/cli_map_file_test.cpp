@@ -93,7 +93,7 @@ TEST_F(CliMapFile, TheSecondSessionFindsItsPlaceInTheMapOfTheFirst) {
 
   const CommandResult page = plvo("map " + path("desk.map") + " --json " + path("after.json"));
   ASSERT_EQ(page.exit_code, 0) << page.err;
-  EXPECT_NE(page.out.find("extent of the way"), std::string::npos) << page.out;
+  EXPECT_NE(page.out.find("extent of the trajectory"), std::string::npos) << page.out;
   const nlohmann::json after = read_json("after.json");
   EXPECT_EQ(after.at("keyframes"), summary.at("keyframes"));
   EXPECT_EQ(after.at("placed_keyframes"), after.at("keyframes"));
@@ -146,7 +146,7 @@ TEST_F(CliMapFile, RefusesFilesThatItCannotUse) {
   };
   refuse(path("none.map"), "cannot read");
   test::write_file(path("text.map"), "no map");
-  refuse(path("text.map"), "text.map: this is no map that plvo saved");
+  refuse(path("text.map"), "text.map: this is not a map that plvo saved");
   test::write_file(path("cut.map"), bytes.substr(0, bytes.size() / 2));
   refuse(path("cut.map"), "the map is cut off");
   test::write_file(path("long.map"), bytes + "x");

@@ -431,7 +431,7 @@ TEST_F(CliOutputs, FaultsOfTheDataAreReportedOnce) {
   };
   EXPECT_EQ(run("--quiet --json " + path("j")).err, "");
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "j"))["warnings"], nlohmann::json::array());
-  said("--cx 0 --cy 0", "a coordinate of 0 is mostly one that nobody filled in");
+  said("--cx 0 --cy 0", "a coordinate of 0 was probably never filled in");
   said("--cx 59.5 --cy 79.5", "cx and cy look exchanged");
   said("--fx 131 --fy 90", "pixels are nearly always square");
   said("--depth-scale 1000", "times the true ones");

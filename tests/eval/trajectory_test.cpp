@@ -115,9 +115,9 @@ TEST(Trajectory, InvalidRotationIsRefusedWithItsLine) {
   EXPECT_EQ(zero.code(), StatusCode::kDamaged);
   EXPECT_TRUE(says(zero, "line 3: the quaternion (x y z w = 0 0 0 0) must have length 1")) << zero.message();
   EXPECT_TRUE(says(read_text("1403636579763555584,1,2,3,0,0,0,0\n", t), "line 1: the quaternion"));
-  EXPECT_TRUE(
-      says(read_text("0 0 0 0 0 0 0 0 0 0 0 0\n", t), "line 1: the 3x3 part of the matrix is no rotation"));
-  EXPECT_TRUE(says(read_text("1 0 0 0 0 1 0 0 0 0 -1 0\n", t), "is no rotation"));  // a reflection
+  EXPECT_TRUE(says(read_text("0 0 0 0 0 0 0 0 0 0 0 0\n", t),
+                   "line 1: the 3x3 part of the matrix is not a rotation"));
+  EXPECT_TRUE(says(read_text("1 0 0 0 0 1 0 0 0 0 -1 0\n", t), "is not a rotation"));  // a reflection
   // Four decimals, as in motion capture files, are accurate enough.
   EXPECT_TRUE(read_text("1.0 0 0 0 0.5774 0.5774 0.5774 0.0\n", t).ok());
 }

@@ -101,7 +101,7 @@ TEST_F(CliLiveFaults, UnplugAndReplug) {
   EXPECT_TRUE(contains(err(), "plvo: warning: Virtual RGB-D was unplugged; plug it in again to go on"))
       << err();
   EXPECT_TRUE(contains(err(), "Virtual RGB-D is back")) << err();
-  EXPECT_TRUE(contains(err(), "frames come again, after")) << err();
+  EXPECT_TRUE(contains(err(), "frames arrive again, after")) << err();
   EXPECT_EQ(summary()["camera_counters"]["unplugged"], 2);
   EXPECT_EQ(summary()["camera_counters"]["replugged"], 2);
   EXPECT_EQ(summary()["interrupted"], true);
@@ -113,7 +113,7 @@ TEST_F(CliLiveFaults, ASensorWithoutAnAccelerometerIsTrackedWithoutGravity) {
   const plvo::test::CommandResult r =
       plvo("live --imu --mode 320x240 --frames 5 --json " + path("j.json") + " --record " + path("kept"));
   EXPECT_EQ(r.exit_code, 0) << r.err;
-  EXPECT_EQ(count_of(r.err, "a Kinect v1 alone has an accelerometer that is read"), 1) << r.err;
+  EXPECT_EQ(count_of(r.err, "a Kinect v1 is the only live sensor whose accelerometer is read"), 1) << r.err;
   EXPECT_EQ(summary()["frames"], 5);
   EXPECT_FALSE(std::filesystem::exists(path("kept/accelerometer.txt")));
 }

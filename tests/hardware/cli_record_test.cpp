@@ -83,7 +83,7 @@ TEST_F(CliRecord, UnplugEndsAnOniFileButNotAFolder) {
       EXPECT_TRUE(says("was unplugged")) << err();
       const long before = listed(path(name));
       tell_device("plug");
-      EXPECT_TRUE(says("frames come again")) << err();
+      EXPECT_TRUE(says("frames arrive again")) << err();
       comes_true([&] { return lines_in(read_file(path(name) + "/depth.txt")) - 1 > before; });
       EXPECT_EQ(interrupt(), 0) << err();
       EXPECT_GT(listed(path(name)), before);

@@ -294,9 +294,9 @@ TEST_F(OniFileTest, InvalidMessagesOfThePlayerAreErrors) {
     EXPECT_NE(std::strstr(status.message(), words), nullptr) << script << ": " << status.message();
     EXPECT_EQ(only_child(), 0);
   };
-  plays("exec sleep 1000", "does not come to an end");
+  plays("exec sleep 1000", "does not finish reading");
   options.oni_patience_ms = 60000;
-  plays("exec head -c 1000 /dev/zero >&0", "something that is no message");
+  plays("exec head -c 1000 /dev/zero >&0", "something that is not a message");
   plays("exit 7", "ended (exit code 7)");
   plays("kill -BUS $$", "crashed (Bus error)");
   plays("exec sleep 1000 <&-", "crashed (Killed)");

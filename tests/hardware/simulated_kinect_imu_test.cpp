@@ -146,7 +146,7 @@ TEST_F(KinectImu, AMissingAccelerometerIsReportedOnce) {
   show_a_room();
   kinect_.plug();
   ASSERT_EQ(plvo({"live", "--imu", "--frames", "60"}), 0) << err_;
-  EXPECT_EQ(count_of(err_, "no accelerometer, poses go on without gravity"), 1) << err_;
+  EXPECT_EQ(count_of(err_, "no accelerometer, poses are tracked without gravity"), 1) << err_;
   EXPECT_NE(err_.find("no Kinect v1 motor on the USB"), std::string::npos) << err_;
   EXPECT_EQ(with_gravity(), 0);
   EXPECT_EQ(tracked.size(), 60U);
@@ -177,7 +177,7 @@ TEST_F(KinectImu, AFailingAccelerometerStopsNothingElseAndMayComeBack) {
   hand.join();
   EXPECT_EQ(code, 0) << err_;
   EXPECT_EQ(tracked.size(), 300U);
-  EXPECT_EQ(count_of(err_, "poses go on without gravity: cannot read the Kinect's state"), 1) << err_;
+  EXPECT_EQ(count_of(err_, "poses are tracked without gravity: cannot read the Kinect's state"), 1) << err_;
   EXPECT_EQ(count_of(err_, "the Kinect's accelerometer answers again"), 1) << err_;
   EXPECT_GE(json("j.json")["accelerometer"]["failures"], 3) << json("j.json");
   EXPECT_EQ(json("j.json")["lost"], 0);

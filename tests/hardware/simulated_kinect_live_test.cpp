@@ -131,7 +131,7 @@ TEST_F(KinectCommand, LiveOutlivesAnUnplug) {
   hand.join();
   EXPECT_EQ(code, 0) << err_;
   EXPECT_NE(err_.find("was unplugged; plug it in again to go on"), std::string::npos) << err_;
-  EXPECT_NE(err_.find("frames come again"), std::string::npos) << err_;
+  EXPECT_NE(err_.find("frames arrive again"), std::string::npos) << err_;
   const nlohmann::json json = this->json("j.json");
   EXPECT_EQ(json["camera_counters"]["replugged"], 1) << err_;
   const std::string rows = read_file(path("s.csv"));

@@ -220,9 +220,9 @@ class WrongMapFile : public testing::Test {
 
 TEST_F(WrongMapFile, BytesThatAreNoMap) {
   bytes_[0] = std::byte{'q'};
-  expect_refused(StatusCode::kDamaged, "this is no map");
+  expect_refused(StatusCode::kDamaged, "this is not a map");
   bytes_.clear();
-  expect_refused(StatusCode::kDamaged, "this is no map");
+  expect_refused(StatusCode::kDamaged, "this is not a map");
 }
 
 TEST_F(WrongMapFile, AnotherVersion) {

@@ -81,7 +81,7 @@ def test_topics_by_name(recording, tmp_path):
     assert raised.value.code == "not_found"
     with pytest.raises(plvo.Error, match="no readings of a gyro .* on /imu; they are on /front/imu"):
         plvo.Sequence(front, topics={"gyro": "/imu"}).imu()
-    with pytest.raises(ValueError, match="'color' is none of colour, depth"):
+    with pytest.raises(ValueError, match="'color' is not one of colour, depth"):
         plvo.Sequence(front, topics={"color": "/front"})
     with pytest.raises(ValueError, match="for a ROS bag"):
         plvo.Sequence(recording, topics={"depth": "/front"})

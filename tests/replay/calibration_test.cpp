@@ -482,7 +482,7 @@ TEST(Calibration, KnowsBuiltinNames) {
   EXPECT_TRUE(seven.depth_camera.known && seven.depth_camera.pinhole.fx == 585 &&
               seven.depth_camera.tx == -0.025);
   ASSERT_EQ(seven.assumptions().size(), 1u);
-  EXPECT_NE(seven.assumptions()[0].find("a guess, for its page gives depth's alone: 525 px"),
+  EXPECT_NE(seven.assumptions()[0].find("a guess, because its page gives only depth's: 525 px"),
             std::string::npos)
       << seven.assumptions()[0];
   EXPECT_NE(seven.assumptions()[0].find("25 mm beside"), std::string::npos) << seven.assumptions()[0];

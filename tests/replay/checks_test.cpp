@@ -46,7 +46,7 @@ TEST(CalibrationCheck, AcceptsPlausibleCameras) {
 }
 
 TEST(CalibrationCheck, ReportsImplausibleGeometry) {
-  EXPECT_TRUE(contains(doubts(525, 525, 0, 0), "a coordinate of 0 is mostly one that nobody filled in"));
+  EXPECT_TRUE(contains(doubts(525, 525, 0, 0), "a coordinate of 0 was probably never filled in"));
   EXPECT_TRUE(contains(doubts(525, 525, 319.5, 0), "(319.5, 0.0) is far from the middle of 640x480 images"));
   EXPECT_TRUE(contains(doubts(525, 525, 239.5, 319.5), "cx and cy look exchanged"));
   EXPECT_TRUE(
@@ -132,7 +132,7 @@ TEST(FrameCheck, DistinguishesBlackColourFromEmptyDepth) {
 }
 
 TEST(FrameCheck, ReportsDepthInAnotherUnit) {
-  EXPECT_TRUE(contains(findings(as_it_is, 1000), "1000 units per metre are in force"));
+  EXPECT_TRUE(contains(findings(as_it_is, 1000), "1000 units per metre are used"));
   EXPECT_TRUE(contains(findings(as_it_is, 25000), "no depth lies beyond 0.42 m"));
 }
 

@@ -115,7 +115,7 @@ TEST(Image, ReadsPgmAndPpm) {
        {"P2 2 1 255\n1 2"sv, "P3 1 1 255\n1 2 3"sv, "P4 8 1\n1"sv, "P7\nWIDTH 2\n"sv}) {
     const Status status = decoder.read_header(file(other), info);
     EXPECT_EQ(status.code(), StatusCode::kUnsupported) << other;
-    EXPECT_TRUE(says(status, "PGM and PPM in bytes are read (P5 and P6)")) << status.message();
+    EXPECT_TRUE(says(status, "only binary PGM and PPM (P5 and P6) are read")) << status.message();
   }
 }
 

@@ -144,7 +144,7 @@ TEST(NumberedFolder, ReportsDamagedPoses) {
   refused("1 0 0 0\n0 1 0 0\n0 0 1 0\n", "expected four rows of four numbers");
   refused("1 0 0\n0 1 0\n0 0 1\n0 0 0\n", "expected four rows of four numbers");
   refused("1 0 0 0\n0 1 0 x\n0 0 1 0\n0 0 0 1\n", "line 2: 'x' is not a number");
-  refused("2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "no rotation");
+  refused("2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "not a rotation");
   refused("1 0 0 0\n0 1 0 0\n0 0 1 0\n4 5 6 1\n", "line 4: the last row of a pose must be 0 0 0 1");
   fs::remove(file);
   ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);

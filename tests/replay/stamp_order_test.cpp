@@ -111,7 +111,7 @@ TEST_F(StampOrder, ReportsConstantClockOffset) {
   // No images pair up.
   Status status = read(list("rgb", 5), list("depth", 8.25));
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
-  EXPECT_TRUE(says(status, "the clock of depth is 3.250 s ahead: take that off the stamps of depth"))
+  EXPECT_TRUE(says(status, "the clock of depth is 3.250 s ahead: subtract that from the stamps of depth"))
       << status.message();
   status = read(list("rgb", 5), list("depth", 1.75));
   EXPECT_TRUE(says(status, "the clock of depth is 3.250 s behind")) << status.message();

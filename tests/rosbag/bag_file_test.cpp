@@ -221,7 +221,8 @@ TEST(BagFile, RejectsFilesThatAreNotBags) {
   write_file(folder / "a.bag", "SQLite format 3 and so on");
   EXPECT_TRUE(says(BagFile().open(folder / "a.bag"), "is not a ROS 1 bag"));
   write_file(folder / "a.bag", "#ROSRECORD V1.2\n and so on");
-  EXPECT_TRUE(says(BagFile().open(folder / "a.bag"), "of another version than 2.0; rosbag migrate"));
+  EXPECT_TRUE(
+      says(BagFile().open(folder / "a.bag"), "of another version than 2.0; convert it with rosbag migrate"));
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ TEST(Diagnosis, PermissionNamesTheRule) {
   expect_only(facts, FindingCode::kPermission, "/dev/bus/usb/001/005", "60-plvo-rgbd.rules");
   EXPECT_EQ(find(diagnose(facts), FindingCode::kReady), nullptr);
   facts.udev_rule = "/etc/udev/rules.d/60-plvo-rgbd.rules";
-  expect_only(facts, FindingCode::kPermission, "No permission", "does not let you in: sudo udevadm");
+  expect_only(facts, FindingCode::kPermission, "No permission", "gives you no access: sudo udevadm");
   // An installed and active rule admits the local user and the group.
   expect_only(facts, FindingCode::kPermission, "No permission", "usermod -aG video $USER");
 }
@@ -105,7 +105,7 @@ TEST(Diagnosis, BusyGoneAndFailedAccess) {
   facts.devices[2].access = UsbAccess::kBusy;
   expect_only(facts, FindingCode::kBusy, "is busy", "fuser -v /dev/bus/usb/001/005");
   facts.devices[2].access = UsbAccess::kGone;
-  expect_only(facts, FindingCode::kGone, "went away", "cable");
+  expect_only(facts, FindingCode::kGone, "was unplugged during the check", "cable");
   facts.devices[2].access = UsbAccess::kFailed;
   facts.devices[2].access_error = "Input/Output Error";
   expect_only(facts, FindingCode::kAccessFailed, "Input/Output Error", "dmesg");

@@ -30,7 +30,7 @@ constexpr MapLimits kMostMap{MapLimits::kMostKeyframes, MapLimits::kMostKeypoint
 Status damaged(const char* what) {
   return Status(StatusCode::kDamaged, "the map is damaged: ")
       .append(what)
-      .append(" cannot be; make it anew, or take a copy");
+      .append(" is impossible; make the map again, or use a copy");
 }
 
 bool lies_between(float value, float least, float most) { return value >= least && value <= most; }
@@ -60,14 +60,14 @@ Status read_info(MapReader& reader, MapFileInfo& info) {
   bool is_map = true;
   for (const char c : kMapMagic) is_map = reader.whole(1) == static_cast<std::uint8_t>(c) && is_map;
   if (!is_map)
-    return {StatusCode::kDamaged, "this is no map that plvo saved: its first bytes are not \"plvo map\""};
+    return {StatusCode::kDamaged, "this is not a map that plvo saved: its first bytes are not \"plvo map\""};
   if (const std::uint32_t version = reader.whole32();
       version != MapFileInfo::kVersion && reader.status().ok())
     return Status(StatusCode::kUnsupported, "the map has format ")
         .append(version)
         .append(", and this plvo reads format ")
         .append(MapFileInfo::kVersion)
-        .append(": take the plvo that made it, or make the map anew");
+        .append(": take the plvo that made it, or make the map again");
   const std::uint32_t width = reader.whole32(), height = reader.whole32();
   for (double* value : {&info.pinhole.fx, &info.pinhole.fy, &info.pinhole.cx, &info.pinhole.cy})
     *value = reader.number();
@@ -243,7 +243,7 @@ Status Map::fits(const MapFileInfo& info) const {
     return {
         StatusCode::kInvalidArgument,
         "the map was made with another camera: its image size and its fx, fy, cx and cy must be the same; "
-        "give that calibration, or make the map anew"};
+        "give that calibration, or make the map again"};
   const MapLimits needed = info.limits();
   if (static_cast<std::size_t>(needed.keyframes) > memory_.graph.capacity() ||
       info.most_points > memory_.features.keypoints() || info.most_lines > memory_.features.segments())
@@ -258,7 +258,7 @@ Status Map::fits(const MapFileInfo& info) const {
 }
 
 Status Map::load(ByteSource& source) {
-  if (!ready_) return {StatusCode::kInvalidArgument, "a map is loaded after Map::init, which was not called"};
+  if (!ready_) return {StatusCode::kInvalidArgument, "Map::init must be called before a map is loaded"};
   clear();
   MapReader reader(source);
   MapFileInfo info;

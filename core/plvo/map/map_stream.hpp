@@ -57,7 +57,8 @@ class SpanSource final : public ByteSource {
   explicit SpanSource(std::span<const std::byte> bytes) : bytes_(bytes) {}
   Status read(std::span<std::byte> bytes) override {
     if (bytes.size() > bytes_.size())
-      return {StatusCode::kDamaged, "the map is cut off: its end is missing; make it anew, or take a copy"};
+      return {StatusCode::kDamaged,
+              "the map is cut off: its end is missing; make the map again, or use a copy"};
     std::copy_n(bytes_.begin(), bytes.size(), bytes.begin());
     bytes_ = bytes_.subspan(bytes.size());
     return {};

@@ -102,9 +102,8 @@ Odometry::Odometry() = default;
   result.mean_brightness = 0;
   result.relocalised = result.restarted = result.repeated = false;
   result.state = TrackState::kLost;
-  result.status = {
-      StatusCode::kDegenerate,
-      "lost: the pose came out as numbers that are none; the next usable frame starts a new world"};
+  result.status = {StatusCode::kDegenerate,
+                   "lost: the computed pose is not finite; the next usable frame starts a new world"};
   return result;
 }
 
@@ -176,7 +175,8 @@ Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
   if (!(input.depth.metres_per_unit >= 1e-6 && input.depth.metres_per_unit < 1))
     return {StatusCode::kInvalidArgument, "metres_per_unit of the depth must lie between 1e-6 and 1"};
   if (last_stamp_ns_ && input.stamp_ns <= *last_stamp_ns_)
-    return {StatusCode::kInvalidArgument, "the frame is not later than the one before; frame ignored"};
+    return {StatusCode::kInvalidArgument,
+            "the stamp is not later than that of the frame before; the frame is ignored"};
   return prior.validate();
 }
 
@@ -213,7 +213,7 @@ Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
   const SensedPose predicted = pose_after(window_, gravity_, T_current_last, covariance, prior);
   TrackResult result;
   result.state = TrackState::kTracking;
-  result.status = {StatusCode::kOk, "the colour image is that of the frame before: the pose is predicted"};
+  result.status = {StatusCode::kOk, "the colour image repeats the one before: the pose is predicted"};
   result.repeated = true;
   result.world = world_;
   result.stamp_ns = input.stamp_ns;

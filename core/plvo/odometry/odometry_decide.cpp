@@ -32,7 +32,7 @@ Status explain_loss(const FrameFeatures& features, const TrackedMotion& tracked,
     case StatusCode::kNoConsensus:
       return status.append("the matches do not agree on one motion; matches: ").append(matched);
     case StatusCode::kDegenerate:
-      return status.append("what is seen leaves some direction of motion open; inliers: ")
+      return status.append("the features do not determine every direction of motion; inliers: ")
           .append(tracked.inliers());
     default: return status.append("the motion did not converge; inliers: ").append(tracked.inliers());
   }
@@ -74,7 +74,7 @@ void decide_start(const Window& window, const GravityFilter& gravity, const Curr
   decision.outcome = Decision::Outcome::kWait;
   decision.status = {
       StatusCode::kNotFound,
-      "waiting for gravity: Config::level_world wants the first frame's prior to say where down is"};
+      "waiting for gravity: Config::level_world needs the direction of gravity in the first frame's prior"};
 }
 
 // Which references stay, by the inliers of the last estimate. A reference with more features than the budget

@@ -151,8 +151,7 @@ void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool is
   note_pose(result);
   if (!world_is_lost_) return;
   world_is_lost_ = false;
-  result.status = {StatusCode::kOk,
-                   "a new world starts: where the camera is in the one before is not known any more"};
+  result.status = {StatusCode::kOk, "a new world starts: the pose in the previous world is no longer known"};
 }
 
 // The frame, now the last one of the window, has a pose from its images.

@@ -46,7 +46,8 @@ std::size_t map_bytes_for(const MapLimits& limits, const CameraModel& camera) {
 // What Map::update looks at.
 Status take_tracked(const plvo_result* given, TrackResult& result) {
   if (Status taken = take_result(given, result); !taken.ok()) return taken;
-  return make_sound(result) ? Status() : refuse("result: a number is not finite, or a matrix is no rotation");
+  return make_sound(result) ? Status()
+                            : refuse("result: a number is not finite, or a matrix is not a rotation");
 }
 
 void give_map_result(const MapResult& in_map, plvo_map_result* caller) {

@@ -146,7 +146,7 @@ OniMessageReader::Message OniMessageReader::invalid(const char* what) {
 OniMessageReader::Message OniMessageReader::begin() {
   Head head{};
   std::memcpy(&head, head_.data(), sizeof head);
-  if (head.mark != kMark) return invalid("something that is no message");
+  if (head.mark != kMark) return invalid("something that is not a message");
   switch (head.kind) {
     case kHello:
       if (recording_.has_value() || head.body_bytes != sizeof(Hello)) return invalid("a wrong greeting");

@@ -56,7 +56,7 @@ Status OniPlayer::open(const std::string& path, const std::string& program,
         // No image was read yet, so the file itself is invalid.
         failure_ = closed_by_child_
                        ? obituary()
-                       : Status(StatusCode::kIo, "OpenNI2 does not come to an end with ").append(path);
+                       : Status(StatusCode::kIo, "OpenNI2 does not finish reading ").append(path);
         return {StatusCode::kDamaged, failure_.message()};
       default: return reader_.failure();
     }
@@ -149,7 +149,7 @@ ImageDevice::Wait OniPlayer::wait(int timeout_ms, DeviceImage& image) {
       if (closed_by_child_) {
         break_off(obituary());
       } else if (Clock::now() - last_heard_ > patience_) {
-        break_off(Status(StatusCode::kIo, "OpenNI2 does not get on with the recording, which is damaged: ")
+        break_off(Status(StatusCode::kIo, "OpenNI2 makes no progress in the recording, which is damaged: ")
                       .append(path_));
       } else {
         return Wait::kTimeout;

@@ -100,7 +100,7 @@ void play(const char* path) {
     }
   }
   send(oni_failure(
-      Status(StatusCode::kIo, "the recording breaks off, it is damaged or was cut: ").append(path)));
+      Status(StatusCode::kIo, "the recording ends early: it is damaged or was cut: ").append(path)));
 }
 
 }  // namespace

@@ -237,8 +237,8 @@ Status OpenNi2Camera::Impl::take(const DeviceImage& image) {
   if (is_colour && stamp.step == StampTracker::Step::kWrap) ++counters.clock_wraps;
   if (is_colour && stamp.step == StampTracker::Step::kJump) {
     ++counters.clock_jumps;
-    log(LogLevel::kWarning,
-        Status(StatusCode::kDamaged, "the camera's clock jumped; stamps go on by this computer's clock"));
+    log(LogLevel::kWarning, Status(StatusCode::kDamaged,
+                                   "the camera's clock jumped; stamps now come from this computer's clock"));
   }
   pairer.commit(stream, stamp.stamp_us);
   return {};

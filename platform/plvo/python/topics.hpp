@@ -26,7 +26,7 @@ inline BagTopicNames bag_topics(const py::object& given) {
       if (key == word) name = place;
     if (name == nullptr)
       throw py::value_error("topics: '" + key +
-                            "' is none of colour, depth, camera_info, gyro, accelerometer");
+                            "' is not one of colour, depth, camera_info, gyro, accelerometer");
     *name = text(value, "topics['" + key + "']");
   }
   return names;

@@ -173,7 +173,7 @@ Status Recording::find_true_poses_of_bag(const fs::path& path, const std::string
 }
 
 Status Recording::read_wheels(const std::string& topic, WheelRecording& recording) const {
-  if (bag_ == nullptr) return {StatusCode::kUnsupported, "a topic of wheels is one of a recording of ROS"};
+  if (bag_ == nullptr) return {StatusCode::kUnsupported, "a topic of wheels needs a recording of ROS"};
   return read_bag_wheels(*bag_->messages(), topic, recording);
 }
 

@@ -65,7 +65,7 @@ Status BagCamera::check_clock(std::size_t topic) const {
   const std::optional<StampFault> fault = find_stamp_fault(stamps);
   if (!fault || fault->kind != StampFault::Kind::kClockStep) return {};
   return {StatusCode::kDamaged,
-          fmt::format("{}: the clock steps back by {:.3f} s, to {}; split the recording there, for the "
+          fmt::format("{}: the clock steps back by {:.3f} s, to {}; split the recording there, because the "
                       "images before and after have the same stamps",
                       bag_->topics()[topic].name, static_cast<double>(fault->step_ns) * 1e-9,
                       format_stamp(stamps[fault->at]))};

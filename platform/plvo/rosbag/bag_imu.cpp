@@ -52,7 +52,7 @@ Status read_topics(MessageFile& bag, std::vector<ImuTopic>& topics) {
     if (readings > kMostReadings)
       return Status(StatusCode::kInvalidArgument,
                     fmt::format("the bag has more than {} readings of gyros and accelerometers, of which "
-                                "plvo takes no more; make a shorter one of it",
+                                "plvo takes no more; split it",
                                 kMostReadings));
     if (imu.rate) topic->gyro.push_back({imu.stamp_ns, *imu.rate});
     if (imu.force) topic->accelerometer.push_back({imu.stamp_ns, *imu.force});

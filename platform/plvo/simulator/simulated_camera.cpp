@@ -149,8 +149,7 @@ Status SimulatedCamera::create(const SimulatorOptions& options, std::unique_ptr<
   const Status valid = options.validate();
   if (!valid.ok()) return valid;
   std::unique_ptr<sim::Scene> scene = sim::build_scene(options.scene, options.seed, options.storey);
-  if (scene == nullptr)
-    return Status(StatusCode::kInvalidArgument, "simulator: the scene is none of those there are");
+  if (scene == nullptr) return Status(StatusCode::kInvalidArgument, "simulator: there is no such scene");
   // From the stamp of the first frame to that of the last frame.
   const double duration_s = (options.frames - 1) / options.fps;
   sim::Trajectory trajectory;

@@ -76,27 +76,27 @@ bool judge_access(const UsbDeviceFacts& device, bool rule_installed, Findings& o
       out.push_back({Severity::kProblem, FindingCode::kPermission,
                      "No permission to use the " + where(device) + ", " + device.node + ".",
                      rule_installed ? std::string("The udev rule ") + kRule +
-                                          " is installed but does not let you in: " + kReplug + ". " + kGroup
+                                          " is installed but gives you no access: " + kReplug + ". " + kGroup
                                     : install_rule()});
       return false;
     case UsbAccess::kBusy:
       out.push_back(
           {Severity::kProblem, FindingCode::kBusy,
-           "The " + where(device) + " is busy: another program holds it, or one ended without letting go.",
+           "The " + where(device) + " is busy: another program holds it, or one ended without releasing it.",
            "Find it with: sudo fuser -v " + device.node +
-               ". End that program; if there is none, plug the "
-               "sensor out and in."});
+               ". End that program; if there is none, unplug the sensor and plug it in again."});
       return false;
     case UsbAccess::kGone:
       out.push_back({Severity::kProblem, FindingCode::kGone,
-                     "The " + where(device) + " went away while it was looked at.",
+                     "The " + where(device) + " was unplugged during the check.",
                      "Check the cable and the 12 V plug; a sensor that comes and goes lacks power or has a "
                      "bad cable."});
       return false;
     case UsbAccess::kFailed:
       out.push_back({Severity::kProblem, FindingCode::kAccessFailed,
                      "The " + where(device) + " cannot be opened: " + device.access_error + ".",
-                     "Plug it out and in, or try another port; sudo dmesg | tail shows the kernel's view."});
+                     "Unplug it and plug it in again, or try another port; sudo dmesg | tail shows the "
+                     "kernel's view."});
       return false;
   }
   return false;
@@ -299,10 +299,10 @@ std::vector<Finding> diagnose(const SystemFacts& facts) {
                    install_rule()});
   }
   if (facts.usb_works && !facts.hot_plug) {
-    out.push_back(
-        {Severity::kNote, FindingCode::kNoHotPlug,
-         "This system tells nobody when a USB device comes or goes; an unplugged Kinect shows as a timeout.",
-         "Run a udev daemon (in a container: share /run/udev with the host)."});
+    out.push_back({Severity::kNote, FindingCode::kNoHotPlug,
+                   "This system does not report when a USB device comes or goes; an unplugged Kinect shows "
+                   "as a timeout.",
+                   "Run a udev daemon (in a container: share /run/udev with the host)."});
   }
   return out;
 }

@@ -16,7 +16,7 @@ void add_measuring_options(CLI::App& command, JobOptions& options) {
   const std::map<std::string, eval::GroundTruthSampling> samplings = {
       {"interpolated", eval::GroundTruthSampling::kInterpolated},
       {"nearest", eval::GroundTruthSampling::kNearest}};
-  command.add_option("--frames", options.frames, "Only the first so many")->type_name("NUMBER");
+  command.add_option("--frames", options.frames, "Only the first N")->type_name("NUMBER");
   command
       .add_option("--camera-model", options.camera_model, "A camera by name, instead of each calibration.txt")
       ->type_name("NAME");

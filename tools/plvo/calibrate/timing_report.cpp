@@ -19,14 +19,14 @@ std::string found_text(const TimingResult& result, std::size_t i) {
   const double value_ms = kMs * value_of(result.timing, i);
   if (i == 2 && result.global_shutter) return "0: a global shutter agrees best";
   if (result.sigma_s[i] == 0) return fmt::format("{:.1f} ms, as given", value_ms);
-  if (!is_told(result, i)) return "not told by these recordings; left as it was";
+  if (!is_told(result, i)) return "not shown by these recordings; left as it was";
   return fmt::format("{:.2f} ms, SD {:.2f} ms", value_ms, kMs * result.sigma_s[i]);
 }
 
 constexpr const char* kStampSigmaKey = "stamp_sigma_s";
 
 std::string stamps_text(const TimingResult& result) {
-  return result.stamp_sigma_s < 0 ? "no even pace in these recordings; left as it was"
+  return result.stamp_sigma_s < 0 ? "no constant frame rate in these recordings; left as it was"
                                   : fmt::format("{:.2f} ms", kMs * result.stamp_sigma_s);
 }
 

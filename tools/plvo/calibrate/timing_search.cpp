@@ -104,9 +104,10 @@ class Search {
     if (result_.turn_rad_per_s < kLeastTurn_rad_per_s)
       return Status(
           StatusCode::kDegenerate,
-          fmt::format("the camera hardly turns ({:.1f} deg/s), so its timing does not show; turn the camera: "
-                      "left and right, up and down, about its axis, 20 to 60 deg/s, all the while",
-                      kDegrees * result_.turn_rad_per_s));
+          fmt::format(
+              "the camera hardly turns ({:.1f} deg/s), so its timing cannot be measured; turn the camera: "
+              "left and right, up and down, about its axis, 20 to 60 deg/s, all the while",
+              kDegrees * result_.turn_rad_per_s));
     return {};
   }
 

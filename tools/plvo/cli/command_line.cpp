@@ -61,8 +61,8 @@ int run_command_line(int argc, const char* const* argv) {
     return status.ok() ? kExitSuccess : fail(status);
   } catch (const std::bad_alloc&) {
     return fail(
-        fmt::format("there is not enough memory: what is read of a file takes up to {} MiB, and more is "
-                    "not to be had (ulimit -v, share/doc/plvo/user/recordings.md#limits)",
+        fmt::format("there is not enough memory: what is read of a file takes up to {} MiB, and more is not "
+                    "available (ulimit -v, share/doc/plvo/user/recordings.md#limits)",
                     kMostReaderBytes >> 20));
   } catch (const std::exception& error) {  // a library's
     return fail(error.what());

@@ -93,11 +93,11 @@ Status SegmentDetector::detect(GrayView reduced, double scale, GrayView full, Ar
   if (reduced.data == nullptr || full.data == nullptr || reduced.width != search_.width ||
       reduced.height != search_.height) {
     return {StatusCode::kInvalidArgument,
-            "lines: the image is missing or not of the size that was announced"};
+            "lines: the image is missing or not of the size that init() was given"};
   }
   if (reduced.width > lsd::LevelLineField::kMostWidth) {
     return Status(StatusCode::kInvalidArgument,
-                  "lines: an image to be searched is at most so many pixels wide: ")
+                  "lines: the image is too wide; the largest width in pixels is ")
         .append(lsd::LevelLineField::kMostWidth);
   }
   const ScratchScope scope(scratch_memory);

@@ -60,7 +60,7 @@ Status read_to_end(const fs::path& path, int descriptor, std::uintmax_t limit_by
     if (!full) continue;
     if (done > limit_bytes)
       return {StatusCode::kInvalidArgument,
-              fmt::format("cannot read {}: it goes on after the {} bytes that are read of such a file",
+              fmt::format("cannot read {}: it is longer than the {} bytes that are read of such a file",
                           path.string(), limit_bytes)};
     bytes.resize(static_cast<std::size_t>(std::min<std::uintmax_t>(limit_bytes, done + kStep)));
     bytes[done - 1] = next;

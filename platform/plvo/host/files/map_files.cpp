@@ -73,8 +73,8 @@ Status load_bytes(const fs::path& path, const std::vector<unsigned char>& bytes,
   if (Status status = map.load(source); !status.ok()) return of_file(path, status);
   if (source.left() == 0) return {};
   return {StatusCode::kDamaged,
-          fmt::format("{}: {} bytes follow the end of the map; make it anew, or take a copy", path.string(),
-                      source.left())};
+          fmt::format("{}: {} bytes follow the end of the map; make the map again, or use a copy",
+                      path.string(), source.left())};
 }
 
 }  // namespace

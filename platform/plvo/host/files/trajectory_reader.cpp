@@ -148,7 +148,8 @@ Status matrix_pose(const std::filesystem::path& path, const TableRow& row, const
     for (int column = 0; column < 3; ++column) T.R(i, column) = v[first + static_cast<std::size_t>(column)];
     T.t[i] = v[first + 3];
   }
-  if (!is_rotation_as_written(T.R)) return row_error(path, row, "the 3x3 part of the matrix is no rotation");
+  if (!is_rotation_as_written(T.R))
+    return row_error(path, row, "the 3x3 part of the matrix is not a rotation");
   pose = T;
   return {};
 }

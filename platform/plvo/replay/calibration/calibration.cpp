@@ -169,7 +169,8 @@ Status builtin_calibration(std::string_view name, Calibration& calibration) {
     result.depth_units_per_metre = kMillimetresPerMetre;
     result.depth_scale_given = true;
     result.guess = fmt::format(
-        "7scenes: colour's camera is a guess, for its page gives depth's alone: {} px, what ROS takes for a "
+        "7scenes: colour's camera is a guess, because its page gives only depth's: {} px, what ROS takes for "
+        "a "
         "Kinect v1 that nobody calibrated, {} mm beside depth's; a better one: --calibration FILE",
         kKinectColour.fx, -1000 * kKinectDepth_tx);
   } else if (name == "kinect-v1-default") {

@@ -24,7 +24,7 @@ double from_middle(double cx, double cy, int width, int height) {
 std::string why_off_centre(const Pinhole& k, int width, int height) {
   if (from_middle(k.cy, k.cx, width, height) < kNearMiddle)
     return "cx and cy look exchanged: cx belongs to the width, cy to the height";
-  if (std::min(k.cx, k.cy) < 1) return "a coordinate of 0 is mostly one that nobody filled in";
+  if (std::min(k.cx, k.cy) < 1) return "a coordinate of 0 was probably never filled in";
   return fmt::format(
       "it is the middle of images of about {:.0f}x{:.0f}: is the calibration of another size? Take that of "
       "this size, or scale fx, fy, cx, cy",

@@ -73,7 +73,7 @@ std::string FrameCheck::finding_of_unit() const {
     return {};
   }
   return fmt::format(
-      "{}: is the unit of depth right? {:.0f} units per metre are in force; TUM recordings have 5000, "
+      "{}: is the unit of depth right? {:.0f} units per metre are used; TUM recordings have 5000, "
       "millimetres are 1000 (depth_scale in a calibration, --depth-scale for recordings)",
       what, units_per_metre_);
 }
@@ -108,7 +108,7 @@ std::vector<std::string> FrameCheck::finish() {
   if (const std::string misfit = edges_.misfit(); !misfit.empty())
     findings.push_back(
         fmt::format("depth looks {0} against colour: its edges agree with those of colour {0}, not as it is; "
-                    "turn the images of one of the two round",
+                    "flip or rotate the images of one of the two",
                     misfit));
   return findings;
 }

@@ -17,7 +17,7 @@ int least_reduction(int width, int height) {
 
 Status check_reduction(int factor, int width, int height) {
   if (factor < 1)
-    return {StatusCode::kInvalidArgument, "images are scaled down by a whole number, from 1 on"};
+    return {StatusCode::kInvalidArgument, "images are scaled down by a whole number that is at least 1"};
   const int small_width = width / factor, small_height = height / factor;
   const bool fits = std::max(small_width, small_height) <= Limits::kMostSide;
   // Images that are too small without scaling get another message elsewhere.

@@ -51,10 +51,9 @@ bool is_netpbm(Bytes file) {
 Status read_netpbm_header(Bytes file, NetpbmHeader& header) {
   header = {};
   if (file[1] != '5' && file[1] != '6')
-    return {
-        StatusCode::kUnsupported,
-        "of Netpbm's images PGM and PPM in bytes are read (P5 and P6), not those in text or of other kinds; "
-        "convert it, or save it as PNG"};
+    return {StatusCode::kUnsupported,
+            "of the Netpbm formats only binary PGM and PPM (P5 and P6) are read; "
+            "convert it, or save it as PNG"};
   header.grey = file[1] == '5';
   std::size_t at = 2;
   header.width = take_number(file, at);

@@ -103,9 +103,9 @@ std::optional<std::int64_t> clock_offset_ns(const std::vector<std::int64_t>& fir
 
 std::string why_no_pair(const std::vector<std::int64_t>& colour, const std::vector<std::int64_t>& depth) {
   if (const std::string doubt = stamp_unit_doubt(colour); !doubt.empty())
-    return "the stamps are no seconds: " + doubt;
+    return "the stamps are not in seconds: " + doubt;
   if (const std::optional<std::int64_t> offset = clock_offset_ns(colour, depth))
-    return fmt::format("the clock of depth is {:.3f} s {}: take that off the stamps of depth",
+    return fmt::format("the clock of depth is {:.3f} s {}: subtract that from the stamps of depth",
                        std::abs(static_cast<double>(*offset)) * 1e-9, *offset > 0 ? "ahead" : "behind");
   return fmt::format("colour's stamps go from {} to {}, depth's from {} to {}", format_stamp(colour.front()),
                      format_stamp(colour.back()), format_stamp(depth.front()), format_stamp(depth.back()));
@@ -118,7 +118,7 @@ std::string doubt_about_clocks(const std::vector<std::int64_t>& colour,
   const std::optional<std::int64_t> offset = clock_offset_ns(colour, depth);
   if (!offset) return {};
   return fmt::format(
-      "depth begins and ends {:.3f} s {} than colour: if its clock is {} by that, pairs are of different "
+      "depth begins and ends {:.3f} s {} than colour: if its clock is {} by as much, pairs are of different "
       "moments, and the stamps of depth must be moved by {:+.3f} s",
       std::abs(static_cast<double>(*offset)) * 1e-9, *offset > 0 ? "later" : "earlier",
       *offset > 0 ? "ahead" : "behind", -static_cast<double>(*offset) * 1e-9);

@@ -63,7 +63,7 @@ Status BagFile::check_beginning() {
   if (read && line.starts_with("#ROS"))
     return {
         StatusCode::kUnsupported,
-        fmt::format("{} is a bag of another version than 2.0; rosbag migrate or rosbag fix makes one of it",
+        fmt::format("{} is a bag of another version than 2.0; convert it with rosbag migrate or rosbag fix",
                     path().string())};
   return {StatusCode::kDamaged, fmt::format("{} is not a ROS 1 bag", path().string())};
 }

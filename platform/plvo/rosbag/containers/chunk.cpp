@@ -106,7 +106,7 @@ Status unpack_zstd_message(std::span<const unsigned char> packed, std::size_t mo
 
 Status unpack_zstd_start(std::span<const unsigned char> packed, std::span<unsigned char> start) {
   const ZstdStream stream = zstd_stream();
-  if (stream == nullptr) return {StatusCode::kOutOfMemory, "no memory to unpack with"};
+  if (stream == nullptr) return {StatusCode::kOutOfMemory, "not enough memory to unpack"};
   ZSTD_inBuffer in = {packed.data(), packed.size(), 0};
   ZSTD_outBuffer out = {start.data(), start.size(), 0};
   while (out.pos < out.size) {
@@ -120,7 +120,7 @@ Status unpack_zstd_start(std::span<const unsigned char> packed, std::span<unsign
 Status unpack_zstd_file(const std::filesystem::path& packed, std::uintmax_t most,
                         const std::filesystem::path& unpacked) {
   const ZstdStream stream = zstd_stream();
-  if (stream == nullptr) return {StatusCode::kOutOfMemory, "no memory to unpack with"};
+  if (stream == nullptr) return {StatusCode::kOutOfMemory, "not enough memory to unpack"};
   std::ifstream from(packed, std::ios::binary);
   std::ofstream to(unpacked, std::ios::binary);
   std::vector<char> in_bytes(ZSTD_DStreamInSize()), out_bytes(ZSTD_DStreamOutSize());

@@ -82,10 +82,9 @@ Status MessageFile::keep_message(Found& found) {
     if (found.place.bytes < start.size() || !read_start(found, start).ok()) return {};
     found.place.stamp_ns = stamp_of_message(topic.wire, start);
     if (++images_ > kMostImages)
-      return {
-          StatusCode::kInvalidArgument,
-          fmt::format("{} holds more than {} images, of which plvo reads no more; make a shorter one of it",
-                      path_.string(), kMostImages)};
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} holds more than {} images, of which plvo reads no more; split it",
+                          path_.string(), kMostImages)};
   }
   if (found.keep) found.keep();
   messages_[found.topic].push_back(found.place);

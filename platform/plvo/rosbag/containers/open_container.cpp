@@ -75,7 +75,7 @@ Status open_packed(const fs::path& path, MessageFile& file) {
 Status open_container(const fs::path& path, std::unique_ptr<MessageFile>& file) {
   std::unique_ptr<MessageFile> made = make_container(container_of(path));
   if (made == nullptr)
-    return {StatusCode::kUnsupported, fmt::format("{} is no recording of messages", path.string())};
+    return {StatusCode::kUnsupported, fmt::format("{} is not a recording of messages", path.string())};
   if (Status status = is_packed_file(path) ? open_packed(path, *made) : made->open_file(path); !status.ok())
     return status;
   file = std::move(made);

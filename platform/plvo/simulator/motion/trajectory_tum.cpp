@@ -25,7 +25,7 @@ Status read_samples(const std::string& path, std::vector<StampedPose>& samples) 
   const auto damaged = [&path](const char* what) {
     return Status(StatusCode::kDamaged, path.substr(0, 160)).append(what);
   };
-  if (recording.ignored_rows > 0) return damaged(" has rows with a NaN or a stamp that was there already");
+  if (recording.ignored_rows > 0) return damaged(" has rows with a NaN or a repeated stamp");
   if (samples.size() < 2) return damaged(" holds fewer than two poses");
   if (samples.back().stamp_ns - samples.front().stamp_ns > kLongest_ns)
     return damaged(" is longer than an hour");

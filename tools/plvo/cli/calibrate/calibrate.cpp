@@ -205,7 +205,7 @@ class Calibrate {
     catch_interrupt();  // until here there is nothing to keep: a signal ends the program at once
     if (!calibrate::is_told(result_, 0))
       return fail(
-          "these recordings do not tell when depth is exposed; record half a minute in a furnished room with "
+          "these recordings do not show when depth is exposed; record half a minute in a furnished room with "
           "light, "
           "turning the camera all the while: left and right, up and down, 20 to 60 deg/s");
     calibrate::SensorTiming timing = result_.timing;
@@ -301,7 +301,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   group.choice("--find", options->find_readouts, Choices<bool>{{"all", true}, {"delay", false}},
                "delay: the readouts are taken from the calibration (default all)");
   group.whole("--frames", options->frames, 60, 5000,
-              "At most so many frames of all recordings (default 300)");
+              "Largest number of frames of all recordings (default 300)");
   group.whole("--threads", options->threads, 1, 256,
               "Threads; the result does not depend on them (default 2)");
   group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");

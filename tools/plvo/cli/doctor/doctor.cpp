@@ -89,7 +89,7 @@ int doctor_command(const DoctorOptions&) {
 void check(const CLI::App& command, const DoctorOptions& options) {
   check_live_camera_options(command, options.camera);
   if (is_bag(options.camera.device))
-    refuse("--device", "a ROS bag is no sensor: plvo run FILE.bag tracks it");
+    refuse("--device", "a ROS bag is not a sensor: plvo run FILE.bag tracks it");
   if (options.no_capture) {
     const char* why = "is for the capture, which --no-capture leaves out";
     refuse_options(command, {"--seconds", "--mode", "--device"}, why);
@@ -109,7 +109,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
       add_command(app, "doctor", "Say what is wrong with the sensor, and what to do", kDoctorHelp);
   add_live_camera_options(command, options->camera, PlayedFiles::kOni);
   OptionGroup group(command);
-  group.number("--seconds", options->seconds, kSeconds, "SECONDS", "Capture only so long (default 3)");
+  group.number("--seconds", options->seconds, kSeconds, "SECONDS", "How long to capture (default 3)");
   group.flag("--no-capture", options->no_capture, "Look, but do not open the camera");
   add_json_option(command, options->json);
   on_command(command, exit_code, [&command, options] {

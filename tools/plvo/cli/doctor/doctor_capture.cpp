@@ -99,7 +99,8 @@ std::vector<CaptureFinding> judge(const CaptureFacts& facts) {
     problem("no_frames",
             fmt::format("{} was opened, but no pair of colour and depth came: {}.", facts.name,
                         facts.last.message()),
-            "Plug the sensor out and in (a Kinect's 12 V supply too), use a port of the computer itself, and "
+            "Unplug the sensor and plug it in again (a Kinect's 12 V supply too), use a port of the computer "
+            "itself, and "
             "try again.");
     return out;
   }
@@ -112,7 +113,7 @@ std::vector<CaptureFinding> judge(const CaptureFacts& facts) {
   if (facts.mean_brightness < kDark) {
     problem("dark",
             fmt::format("The colour image is black (mean brightness {:.0f} of 255).", facts.mean_brightness),
-            "Take the cover off, or make light: no features can be found in the dark.");
+            "Take the cover off, or switch a light on: no features can be found in the dark.");
   }
   if (facts.depth_share < kFewDepth) {
     problem("no_depth", fmt::format("Only {:.0f} % of the pixels have depth.", 100 * facts.depth_share),

@@ -36,7 +36,7 @@ void add_documentation(CLI::App& app, int& exit_code) {
   auto name = std::make_shared<std::string>();
   CLI::App& man = add_command(app, "man", "Print a manual page");
   man.group("");
-  OptionGroup(man).choice("command", *name, names, "Of which command; without it, of the program");
+  OptionGroup(man).choice("command", *name, names, "The command to document; without it, the program");
   on_command(man, exit_code, [&app, name] { return print_or_fail(man_page(app, *name)); });
 }
 

@@ -93,7 +93,7 @@ Status read_inputs(const EvalOptions& options, EvalInputs& inputs) {
     status = eval::read_covariances(options.covariance, inputs.covariances);
   if (status.ok() && !options.motions.empty()) status = eval::read_motions(options.motions, inputs.motions);
   if (status.ok() && !options.kitti_times.empty() && !kitti)
-    refuse_command("--kitti-times is for KITTI's rows of 12 numbers, and no file has them; leave it away");
+    refuse_command("--kitti-times is for KITTI's rows of 12 numbers, and no file has them; leave it out");
   return status;
 }
 
@@ -196,10 +196,10 @@ int eval_command(EvalOptions options) {
 
 void check(const CLI::App& command, const EvalOptions& options) {
   if (options.sampling != eval::GroundTruthSampling::kNearest)
-    refuse_options(command, {"--max-dt"}, "is for --gt-sampling nearest; add that, or leave it away");
+    refuse_options(command, {"--max-dt"}, "is for --gt-sampling nearest; add that, or leave it out");
   if (options.sampling == eval::GroundTruthSampling::kNearest)
     refuse_options(command, {"--fit-truth"},
-                   "shifts the truth's clock, so that it is interpolated; leave --gt-sampling nearest away");
+                   "shifts the truth's clock, so that it is interpolated; leave --gt-sampling nearest out");
   if (options.covariance.empty() && options.motions.empty())
     refuse_options(command, {"--gt-sigma"}, "is for the NEES; add --est-covariance or --est-motions");
   const std::filesystem::path& truth = options.ground_truth.path;
@@ -209,11 +209,10 @@ void check(const CLI::App& command, const EvalOptions& options) {
     refuse("--est", "a ROS bag is a recording; name the trajectory that plvo run --out made of it");
   if (options.estimates.size() > 1) {
     refuse_options(command, {"--est-covariance", "--est-motions", "--report"},
-                   "is for one estimate, and --est names several; leave it away, or compare each by itself");
-    refuse_options(
-        command, {"--fit-truth"},
-        "fits the truth to one estimate, so that each would be compared with another truth; leave it "
-        "away where several are ranked");
+                   "is for one estimate, and --est names several; leave it out, or compare each by itself");
+    refuse_options(command, {"--fit-truth"},
+                   "fits the truth to one estimate, so that each would be compared with another truth; leave "
+                   "it out where several are ranked");
   }
   if (!is_numbered_folder(truth)) refuse_options(command, {"--rate"}, "is for a folder of numbered frames");
   FileRoles files;
@@ -258,18 +257,18 @@ void add_inputs(CLI::App& command, EvalOptions& options) {
       {"tum", eval::TrajectoryFormat::kTum},
       {"euroc", eval::TrajectoryFormat::kEuroc},
       {"kitti", eval::TrajectoryFormat::kKitti}};
-  group.choice("--gt-format", options.ground_truth.format, formats, "auto: told by the content (default)");
-  group.choice("--est-format", options.estimate_format, formats, "auto: told by the content (default)");
+  group.choice("--gt-format", options.ground_truth.format, formats,
+               "auto: detected from the content (default)");
+  group.choice("--est-format", options.estimate_format, formats, "auto: detected from the content (default)");
   add_rate_option(group, options.folder.frames_per_s);
-  takes_values(
-      group.add("--kitti-times", "FILE",
-                "Stamps of KITTI rows, one in seconds a line (default: 0.1 s apart); two files where truth "
-                "and estimate have not the same",
-                [&options](const std::string& text) -> std::string {
-                  options.kitti_times.push_back(text);
-                  return text.empty() ? "expected a path, not an empty word" : "";
-                }),
-      1, 2);
+  takes_values(group.add("--kitti-times", "FILE",
+                         "Stamps of KITTI rows, one in seconds a line (default: 0.1 s apart); two files if "
+                         "truth and estimate have different ones",
+                         [&options](const std::string& text) -> std::string {
+                           options.kitti_times.push_back(text);
+                           return text.empty() ? "expected a path, not an empty word" : "";
+                         }),
+               1, 2);
   file("--est-covariance", options.covariance,
        "Covariances of the estimate's poses (plvo run --covariance): adds their NEES");
   file("--est-motions", options.motions,
@@ -289,7 +288,7 @@ void add_eval(CLI::App& app, int& exit_code) {
                                                   {"interpolated", eval::GroundTruthSampling::kInterpolated}},
                "True pose at a stamp: interpolated (default), or the nearest, as TUM's scripts take it");
   group.number("--max-dt", options->max_difference_s, positive(3600), "SECONDS",
-               "With --gt-sampling nearest: most that a pose is from its true pose (default 0.02)");
+               "With --gt-sampling nearest: largest time between a pose and its true pose (default 0.02)");
   takes_values(
       group.add("--gt-sigma", "NUMBER",
                 "Two numbers: how far a true pose is off, standard deviations in each axis of its position "
@@ -303,7 +302,7 @@ void add_eval(CLI::App& app, int& exit_code) {
       2, 2);
   group.flag("--fit-truth", options->fit_truth,
              "Compare with the truth turned (3 angles) and its clock shifted as explains the estimate best; "
-             "not for comparing systems, for it flatters each");
+             "not for comparing systems, because it flatters each");
   group.number("--offset", options->offset_s, {-4e9, 4e9}, "SECONDS", "Added to the stamps of the estimate");
   repeatable(group.add(
       "--rpe-delta", "DELTA",

@@ -87,14 +87,14 @@ void check(const CLI::App& command, LiveOptions& options) {
   check_odometry_options(options.odometry);
   if (is_played(options.camera)) {
     refuse_options(command, {"--every-frame"},
-                   "is what a recording and the simulated camera do anyway; leave it away");
+                   "is what a recording and the simulated camera do anyway; leave it out");
     refuse_options(command, {"--imu"},
                    "is for a live Kinect; plvo run FILE.bag --imu takes a bag's readings");
   }
   if ((is_bag(options.camera.device) || options.camera.simulated) && is_oni_file(options.record))
     refuse("--record", "a ROS bag and the simulated camera are kept as a folder, not as an .oni file");
   if (options.outputs.view.empty())
-    refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");
+    refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it out");
   LiveOutputOptions& outputs = options.outputs;
   check_output_options(command);
   const bool wheels = !options.wheels.file.empty();
@@ -132,7 +132,7 @@ void add_live(CLI::App& app, int& exit_code) {
       "--imu", options->imu,
       "With a Kinect v1's accelerometer: gravity holds roll and pitch; with --record DIR it is kept, too");
   group.number("--max-rate", options->max_rate_hz, positive(1000), "HZ",
-               "Track so many frames a second at most");
+               "Largest number of frames tracked per second");
   group.flag("--every-frame", options->every_frame, "Drop no frame: the camera waits for the odometry");
   add_wheel_options(command, options->wheels, WheelSource::kStream);
   add_limit_options(command, options->frames, options->seconds);

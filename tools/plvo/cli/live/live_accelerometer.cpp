@@ -42,16 +42,16 @@ Status LiveAccelerometer::start(const LiveCamera& camera, bool level) {
   const bool kinect = uri.rfind(kKinectScheme, 0) == 0;
   if (!kinect && level)
     return {StatusCode::kUnsupported,
-            "--level: of live sensors a Kinect v1 alone has an accelerometer that is read; leave it away"};
+            "--level: a Kinect v1 is the only live sensor whose accelerometer is read; leave it out"};
   if (!kinect) {
     console_.write(LogLevel::kWarning,
-                   "--imu: of live sensors a Kinect v1 alone has an accelerometer that is read; poses go on "
-                   "without gravity");
+                   "--imu: a Kinect v1 is the only live sensor whose accelerometer is read; poses are "
+                   "tracked without gravity");
     return {};
   }
   if (Status status = integrator_.init({}, memory_, kinect_config()); !status.ok()) return status;
   sensor_ = std::make_unique<KinectAccelerometer>(
-      console_, level ? "the level world waits for it" : "poses go on without gravity");
+      console_, level ? "the level world waits for it" : "poses are tracked without gravity");
   sensor_->start(uri.substr(kKinectScheme.size()));
   return {};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `--imu` of a live session: the accelerometer of a Kinect v1 beside its camera. Its readings come by the
 // computer's clock and are taken over to the clock of the frames; whatever is wrong with it is said once, and
-// poses go on without gravity.
+// poses are tracked without gravity.
 #pragma once
 
 #include <memory>

@@ -65,7 +65,7 @@ void check_live_camera_options(const CLI::App& command, const LiveCameraOptions&
     refuse_group(command, kBagGroup, why);
     return;
   }
-  refuse_group(command, kSimulatorGroup, "is for the simulated camera: add --camera sim, or leave it away");
+  refuse_group(command, kSimulatorGroup, "is for the simulated camera: add --camera sim, or leave it out");
   if (!is_played(options))
     refuse_options(command, {"--pace"}, "is for a recording or the simulated camera; a sensor has its own");
   if (is_recorded_device(options.device))
@@ -83,7 +83,7 @@ void add_inputs(const LiveCameraOptions& options, FileRoles& files) {
 
 void add_limit_options(CLI::App& command, std::uint64_t& frames, double& seconds) {
   OptionGroup group(command);
-  group.whole("--frames", frames, 1, 1'000'000'000, "Only the first so many frames");
+  group.whole("--frames", frames, 1, 1'000'000'000, "Only the first N frames");
   group.number("--seconds", seconds, kSeconds, "SECONDS", "Only so long");
 }
 

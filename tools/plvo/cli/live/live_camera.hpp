@@ -58,14 +58,14 @@ class LiveCamera : public RgbdCamera {
   virtual OpenNi2Counters counters() const = 0;
   virtual bool registered_by_device() const = 0;
   // What a recording has of a gyro and an accelerometer.
-  virtual Status read_imu(ImuRecording&) { return {StatusCode::kNotFound, "the camera is no recording"}; }
+  virtual Status read_imu(ImuRecording&) { return {StatusCode::kNotFound, "the camera is not a recording"}; }
   virtual Status read_wheels(const std::string&, WheelRecording&) {
-    return {StatusCode::kNotFound, "the camera is no recording"};
+    return {StatusCode::kNotFound, "the camera is not a recording"};
   }
   // The true poses of a recording of ROS, and where they were: a topic, or the name of a file. kNotFound
   // without.
   virtual Status read_true_poses(eval::Trajectory&, std::string&) {
-    return {StatusCode::kNotFound, "the camera is no recording"};
+    return {StatusCode::kNotFound, "the camera is not a recording"};
   }
   // Ends an .oni recording, too. What was asked for above can still be asked.
   virtual void close() = 0;

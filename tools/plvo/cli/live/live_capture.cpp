@@ -82,8 +82,8 @@ void LiveCapture::on_frame(const RgbdFrame& frame) {
     trouble_since_ns_ = 0;
   }
   if (trouble_ns > 0)
-    console_.write(LogLevel::kInfo,
-                   fmt::format("frames come again, after {:.1f} s", static_cast<double>(trouble_ns) * 1e-9));
+    console_.write(LogLevel::kInfo, fmt::format("frames arrive again, after {:.1f} s",
+                                                static_cast<double>(trouble_ns) * 1e-9));
   recording_.push(frame);
   ring_.push(frame, now);
   tell(check_.add(frame));

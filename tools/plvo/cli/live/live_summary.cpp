@@ -57,7 +57,7 @@ std::string LiveSummary::to_text() const {
         "recording",
         fmt::format(
             "{} frames in {}{}", recorded, recording,
-            not_recorded > 0 ? fmt::format("; {} dropped, for the disk is too slow", not_recorded) : ""));
+            not_recorded > 0 ? fmt::format("; {} dropped, because the disk is too slow", not_recorded) : ""));
   if (accelerometer.used)
     rows.emplace_back("accelerometer",
                       fmt::format("{} readings, {} left out as late, {} failures", accelerometer.readings,

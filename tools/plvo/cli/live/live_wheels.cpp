@@ -119,14 +119,17 @@ void LiveWheels::tell(std::int64_t stamp_ns, bool with) {
 
 std::string LiveWheels::why_without(std::int64_t stamp_ns) const {
   const std::optional<std::int64_t> last_ns = priors_.last_ns();
-  if (reader_.ended()) return fmt::format("{} has ended; frames go on without wheels", name_);
-  if (!last_ns) return fmt::format("no line of the wheels has come from {} yet; frames go on without", name_);
+  if (reader_.ended()) return fmt::format("{} has ended; frames are tracked without wheels", name_);
+  if (!last_ns)
+    return fmt::format("no line of the wheels has come from {} yet; frames are tracked without wheels",
+                       name_);
   const double late_s = 1e-9 * (static_cast<double>(stamp_ns) - static_cast<double>(*last_ns));
   if (late_s > 0)
     return fmt::format(
-        "the last line of the wheels is {:.2f} s older than the frame; frames go on without until lines come",
+        "the last line of the wheels is {:.2f} s older than the frame; frames are tracked without wheels "
+        "until lines come",
         late_s);
-  return "the lines of the wheels have a gap, or begin after the frame; it goes on without";
+  return "the lines of the wheels have a gap, or begin after the frame; it is tracked without wheels";
 }
 
 void LiveWheels::keep(const WheelSample& sample) {

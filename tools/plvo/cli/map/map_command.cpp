@@ -86,7 +86,7 @@ std::string page_of(const std::string& file, const StoredMap& stored, const MapC
   row("points", fmt::format("{}", info.points));
   row("lines", fmt::format("{}", info.lines));
   row("loops", fmt::format("{}", info.loops));
-  row("extent of the way", extent_text(contents.cameras));
+  row("extent of the trajectory", extent_text(contents.cameras));
   row("extent of what is seen", extent_text(contents.points));
   row("to load it", fmt::format("--map {} or more; {:.1f} MB of memory", info.limits().keyframes,
                                 static_cast<double>(stored.memory_bytes()) * 1e-6));

@@ -49,7 +49,7 @@ class PlyScene {
 void add_map_options(CLI::App& command, MapOptions& options) {
   OptionGroup group(command, "Map");
   group.whole("--map", options.keyframes, MapLimits::kLeastKeyframes, MapLimits::kMostKeyframes,
-              "Keep a map of up to so many keyframes, which corrects the drift where a place is seen again "
+              "Keep a map of at most N keyframes, which corrects the drift where a place is seen again "
               "(24 KB each)");
   group.path("--map-in", options.in,
              "Begin with this map: the camera is found in it when it sees a place of it");
@@ -63,7 +63,7 @@ void add_map_options(CLI::App& command, MapOptions& options) {
 void check_map_options(const CLI::App& command, const MapOptions& options) {
   if (options.keyframes == 0)
     refuse_options(command, {"--map-in", "--map-out", "--map-trajectory", "--ply"},
-                   "is for a map: add --map N, or leave it away");
+                   "is for a map: add --map N, or leave it out");
 }
 
 // A map may take the place of the one that was read: it was read whole, and the new one comes whole.

@@ -82,7 +82,7 @@ void check_base_option(BaseOption& option, bool poses_are_written) {
   if (!poses_are_written)
     refuse(kOption,
            "changes what is written: add --out, --covariance, --motions, --mavlink or --stream, or leave it "
-           "away");
+           "out");
   option.T_base_camera = Se3{to_rotation({n[3], n[4], n[5], n[6]}), {n[0], n[1], n[2]}};
 }
 

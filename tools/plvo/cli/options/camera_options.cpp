@@ -204,7 +204,7 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
   }
   if (options.sequence.empty())
     refuse_command("a sequence is needed: plvo run DIR, plvo run FILE.oni or plvo run --camera sim");
-  refuse_group(command, kSimulatorGroup, "is for the simulated camera: add --camera sim, or leave it away");
+  refuse_group(command, kSimulatorGroup, "is for the simulated camera: add --camera sim, or leave it out");
   if (is_bag(options.sequence))
     return refuse_options(command, {"--associations", "--rate"},
                           "does not apply to a ROS bag, which has pairs and stamps of its own");

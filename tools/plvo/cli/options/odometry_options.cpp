@@ -37,7 +37,7 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
               "2: points and lines are searched for at the same time, and images and features halved between "
               "two threads; results are the same. Times of stages are those of the first (default 1)");
   group.whole("--surfaces", options.surfaces, 0, 1000,
-              "So many samples of surfaces from each depth image, besides points and lines; 0: none "
+              "Number of samples of surfaces from each depth image, besides points and lines; 0: none "
               "(default 200; none of --preset paper and tiny)");
   group.path("--mask", options.mask,
              "PNG of the size of the colour images, drawn over one of them: white is used, black is not. For "

@@ -30,19 +30,16 @@ constexpr int kRingPatience_ms = 100;
 constexpr const char* kTruthFile = "groundtruth.txt";
 constexpr const char* kRecordHelp =
     "Examples:\n"
-    "  plvo record sequence                               a new folder with PNG images; then: plvo run "
-    "sequence\n"
-    "  plvo record recording.oni --seconds 60              one file of OpenNI2; then: plvo run "
-    "recording.oni\n"
-    "  plvo record sequence --device recording.oni   the one from the other; plvo convert does the same\n"
+    "  plvo record sequence                         a new folder with PNG images; then: plvo run sequence\n"
+    "  plvo record recording.oni --seconds 60       one file of OpenNI2; then: plvo run recording.oni\n"
+    "  plvo record sequence --device recording.oni  the one from the other; plvo convert does the same\n"
     "\n"
     "Ctrl-C ends, and so does a full disk: what was written is whole and can be read.\n";
 
 constexpr const char* kConvertHelp =
     "Examples:\n"
-    "  plvo convert recording.mcap --out sequence        a new folder with PNG images; then: plvo run "
-    "sequence\n"
-    "  plvo convert recording.bag --out sequence --imu   with gyro and accelerometer\n"
+    "  plvo convert recording.mcap --out sequence         a new folder with PNG images, for plvo run\n"
+    "  plvo convert recording.bag --out sequence --imu    with gyro and accelerometer\n"
     "\n"
     "The true poses of a recording of ROS become groundtruth.txt. plvo run reads such recordings as\n"
     "they are: convert makes folders for other programs.\n";
@@ -123,10 +120,9 @@ Status read_beside_images(const RecordOptions& options, LiveCamera& camera, Log&
     status = camera.read_wheels(options.wheels_topic, beside.wheels);
   if (!status.ok()) return status;
   if (beside.wheels.ignored > 0)
-    log.write(
-        LogLevel::kWarning,
-        fmt::format("{} messages on {} left out: damaged, not finite, or of a stamp that was there already",
-                    beside.wheels.ignored, options.wheels_topic));
+    log.write(LogLevel::kWarning,
+              fmt::format("{} messages on {} left out: damaged, not finite, or with a repeated stamp",
+                          beside.wheels.ignored, options.wheels_topic));
   take_true_poses(options, camera, log, beside);
   return {};
 }
@@ -206,7 +202,7 @@ int record_command(const RecordOptions& options) {
                     interrupted() ? ", ended by a signal" : "");
     if (recording.dropped() > 0)
       text += fmt::format(
-          "; {} dropped, for the disk or the processor is too slow: try --mode 320x240 or an .oni file",
+          "; {} dropped, because the disk or the processor is too slow: try --mode 320x240 or an .oni file",
           recording.dropped());
     if (!beside.truth_source.empty())
       text += fmt::format("; {} true poses of {} in {}", beside.truth.poses.size(),
@@ -224,7 +220,7 @@ void check(const CLI::App& command, const RecordOptions& options) {
   if (is_oni_file(options.path)) {
     refuse_group(
         command, kCalibrationGroup,
-        "would be lost, for an .oni file keeps no calibration: give it to plvo run FILE.oni instead");
+        "would be lost, because an .oni file keeps no calibration: give it to plvo run FILE.oni instead");
     refuse_options(command, {"--imu"}, "an .oni file keeps no readings of it; record a folder instead");
     if (is_bag(options.camera.device)) refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
     files.writes("path", options.path);
@@ -237,7 +233,7 @@ void check(const CLI::App& command, const RecordOptions& options) {
     refuse_options(command, {"--imu"}, "does not apply to an .oni file, which holds no such readings");
   if (!options.imu)
     refuse_options(command, {"--gyro-topic", "--accelerometer-topic"},
-                   "is for --imu: add it, or leave this away");
+                   "is for --imu: add it, or leave this out");
   add_inputs(options.camera, files);
   files.check();
 }

@@ -45,7 +45,7 @@ void add_imu_options(CLI::App& command, ImuOptions& options) {
 void check_imu_options(const CLI::App& command, const ImuOptions& options, const CameraOptions& camera) {
   if (!options.used)
     refuse_options(command, {"--imu-axes", "--gyro-topic", "--accelerometer-topic"},
-                   "is for --imu: add it, or leave this away");
+                   "is for --imu: add it, or leave this out");
   if (camera.simulated) refuse_options(command, {"--imu-axes"}, "is for recorded sequences");
   if (!camera.simulated && is_oni_file(camera.sequence))
     refuse_options(command, {"--imu"}, "does not apply to an .oni file, which holds no such readings");

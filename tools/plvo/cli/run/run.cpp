@@ -255,7 +255,7 @@ void check(const CLI::App& command, RunOptions& options) {
   check_odometry_options(options.odometry);
   check_imu_options(command, options.imu, options.camera);
   if (options.report.empty())
-    refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
+    refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it out");
   check_map_options(command, options.map);
   check_output_options(command);
   check_base_option(options.outputs.base, options.outputs.has_poses() || !options.wheels.file.empty());

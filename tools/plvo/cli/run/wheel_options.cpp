@@ -35,7 +35,7 @@ void add_wheel_options(CLI::App& command, WheelOptions& options, WheelSource sou
 
 void check_wheel_options(const CLI::App& command, const WheelOptions& options, const BaseOption& base) {
   if (options.file.empty())
-    return refuse_options(command, {"--wheels-error"}, "is for --wheels: add that, or leave this away");
+    return refuse_options(command, {"--wheels-error"}, "is for --wheels: add that, or leave this out");
   if (base.numbers.empty())
     refuse("--wheels", "needs --base-camera: where the camera sits in the robot whose wheels these are");
 }

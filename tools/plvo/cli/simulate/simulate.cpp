@@ -74,7 +74,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
   OptionGroup group(command);
   require(group.path("--out", options->folder, "A new folder for the sequence", "DIR"));
   group.whole("--frames", options->frames, 1, kMostSimulatedFrames,
-              "Only the first so many frames (default " + std::to_string(kSimulatedFrames) + ")");
+              "Only the first N frames (default " + std::to_string(kSimulatedFrames) + ")");
   group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
   add_simulator_options(command, options->simulator);
   on_command(command, exit_code, [options] {
