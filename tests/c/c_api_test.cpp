@@ -470,7 +470,7 @@ TEST(CApi, NamesEveryCodeAndState) {
   EXPECT_STREQ(plvo_version(), PLVO_VERSION);
 }
 
-TEST(CApi, QuaternionOfARotation) {
+TEST(CApi, ReturnsTheQuaternionOfARotation) {
   const double quarter_turn_about_z[12] = {0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7};
   double q[4];
   plvo_quaternion(quarter_turn_about_z, q);

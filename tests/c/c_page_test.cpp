@@ -129,7 +129,7 @@ TEST_F(CPage, InvalidWheelStepsAreRefusedAndChangeNothing) {
 }
 
 // plvo_config.level_world, which joined the struct last: the first pose waits for gravity.
-TEST_F(CPage, ALevelWorld) {
+TEST_F(CPage, FirstPoseWaitsForGravityWhenTheWorldIsLevel) {
   Config level = Config::tiny();
   level.level_world = true;
   start(level);

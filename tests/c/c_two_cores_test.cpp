@@ -76,7 +76,7 @@ TEST_F(CTwoCores, ThePagesFunctionGivesTheSameBits) {
   plvo_thread_pair_stop(pair);
 }
 
-TEST_F(CTwoCores, AFunctionOfTheCallersOwn) {
+TEST_F(CTwoCores, GivesTheSameBitsWithAnExecutorOfTheCaller) {
   Runs runs;
   config.executor = run_here;
   config.executor_runner = &runs;

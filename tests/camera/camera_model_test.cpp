@@ -111,7 +111,7 @@ struct BadCamera {
 
 class ValidateRefuses : public testing::TestWithParam<BadCamera> {};
 
-TEST_P(ValidateRefuses, AndNamesTheEntry) {
+TEST_P(ValidateRefuses, AnInvalidCameraAndNamesTheEntry) {
   CameraModel camera = freiburg1();
   GetParam().spoil(camera);
   const Status status = camera.validate();

@@ -130,7 +130,7 @@ TEST_F(CliEvalFiles, TextHasEveryRow) {
     EXPECT_NE(r.out.find(words), std::string::npos) << words << '\n' << r.out;
 }
 
-TEST_F(CliEvalFiles, UsageErrors) {
+TEST_F(CliEvalFiles, ExitsWithTwoWhenUsageIsWrong) {
   EXPECT_EQ(run_plvo("eval").exit_code, 2);
   EXPECT_EQ(run_plvo("nonsense").exit_code, 2);
   EXPECT_EQ(run_plvo("eval --help").exit_code, 0);

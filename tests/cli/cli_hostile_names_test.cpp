@@ -44,7 +44,7 @@ class CliHostileNames : public test::PlvoCommand {
   const std::string recording_;
 };
 
-TEST_F(CliHostileNames, AFolder) {
+TEST_F(CliHostileNames, EscapesTheNameOfAFolder) {
   const CommandResult r =
       plvo("run " + quoted(recording_) + " --json " + path("json") + " --report " + path("page"));
   EXPECT_EQ(r.exit_code, 0) << r.err;
@@ -81,7 +81,7 @@ TEST_F(CliHostileNames, APathThatIsNotThere) {
   }
 }
 
-TEST_F(CliHostileNames, AWordOfTheCommandLine) {
+TEST_F(CliHostileNames, EscapesWordsOfTheCommandLine) {
   const std::string word = quoted(kHostile);
   for (const std::string& words : {word, "run --" + kHostile, "run --frames " + word, "run x y" + kHostile,
                                    "run " + word + " --camera-model " + word}) {
@@ -96,7 +96,7 @@ TEST_F(CliHostileNames, AWordOfTheCommandLine) {
   EXPECT_EQ(cut.err.find("\\x"), std::string::npos) << cut.err;
 }
 
-TEST_F(CliHostileNames, ACalibration) {
+TEST_F(CliHostileNames, EscapesKeysOfACalibration) {
   test::write_file(folder_ / "c.txt", "fx: 131\n" + std::string("k\x1b[31m\u009b: 3\n"));
   test::write_file(folder_ / "c.yaml", std::string("fx: 131\nmodel: \"\x1b[31m\"\n"));
   for (const char* file : {"c.txt", "c.yaml"}) {
@@ -106,7 +106,7 @@ TEST_F(CliHostileNames, ACalibration) {
   }
 }
 
-TEST_F(CliHostileNames, AReasonInTheStatistics) {
+TEST_F(CliHostileNames, EscapesFileNamesInTheStatistics) {
   const fs::path list = fs::path(recording_) / "rgb.txt",
                  image = fs::directory_iterator(list.parent_path() / "rgb")->path();
   std::string text = read_file(list);

@@ -201,7 +201,7 @@ TEST_F(CliOutputs, TrajectoriesFollowTumsFormatExactly) {
 
 // The poses of the base are those of the camera, transformed by the mounting of the camera, and so are their
 // covariances: a motion's error in units of its covariance does not change.
-TEST_F(CliOutputs, PosesOfTheRobotsBase) {
+TEST_F(CliOutputs, WritesPosesOfTheBaseWhenItsCameraIsGiven) {
   const std::string place = "0.2 -0.1 0.5 -0.54 0.46 -0.5 0.497";
   const Se3 T_base_camera{to_rotation({-0.54, 0.46, -0.5, 0.497}), Vector3(0.2, -0.1, 0.5)};
   const auto files = [this](const std::string& name) {
@@ -286,7 +286,7 @@ TEST_F(CliOutputs, AccelerometerLevelsTheWorld) {
 }
 
 // Keeps every second pixel of the depth images, like a sensor with a smaller depth camera in the same place.
-TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
+TEST_F(CliOutputs, RegistersDepthOfAnotherSizeWhenItsCameraIsGiven) {
   ASSERT_EQ(run("--quiet --out " + path("whole")).exit_code, 0);
   ImageDecoder decoder;
   std::vector<std::uint16_t> whole(160 * 120), half(80 * 60);

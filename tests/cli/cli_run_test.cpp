@@ -244,7 +244,7 @@ TEST_F(CliRun, QuietWritesNothing) {
   EXPECT_TRUE(r.out.empty() && r.err.empty()) << r.out << r.err;
 }
 
-TEST_F(CliRun, FrameRange) {
+TEST_F(CliRun, TracksOnlyTheFramesOfARange) {
   ASSERT_EQ(run("--quiet --frames 1:4 --out " + path("t.txt")).exit_code, 0);
   EXPECT_EQ(lines_of(path("t.txt")), 1 + 3);
   expect_refused(run("--frames 50:60"), "the frame range is empty");
@@ -279,13 +279,13 @@ TEST_F(CliRun, OverlayAndReportAreWritten) {
   EXPECT_FALSE(contains(page, "@DATA@") || contains(page, "@SCRIPT@") || contains(page, "@STYLE@"));
 }
 
-TEST_F(CliRun, EmptyFolder) {
+TEST_F(CliRun, RefusesAFolderWithoutLists) {
   fs::create_directory(folder_ / "empty");
   expect_refused(plvo("run " + path("empty")), "a sequence needs rgb.txt and depth.txt");
   expect_refused(plvo("run " + path("none")), "is not a folder");
 }
 
-TEST_F(CliRun, MissingDepthList) {
+TEST_F(CliRun, NamesTheDepthListWhenItIsMissing) {
   fs::remove(sequence_ / "depth.txt");
   expect_refused(run(""), "depth.txt; a sequence needs rgb.txt and depth.txt");
 }
@@ -302,14 +302,14 @@ TEST_F(CliRun, TruncatedImageInTheMiddleIsSkipped) {
   EXPECT_EQ(nlohmann::json::parse(read_file(path("j.json")))["damaged"], 1);
 }
 
-TEST_F(CliRun, EightBitDepth) {
+TEST_F(CliRun, RefusesDepthOfEightBits) {
   const std::vector<std::uint8_t> grey(160 * 120, 80);
   ASSERT_TRUE(write_png(image("depth", 0), ColourView{grey.data(), 160, 120, 160, PixelFormat::kGray8}).ok());
   expect_refused(run("--out " + path("t.txt")), "has 8 bits per channel; depth must be a 16-bit grey PNG");
   EXPECT_FALSE(fs::exists(path("t.txt")));  // refused before any output is written
 }
 
-TEST_F(CliRun, ColourAndDepthOfDifferentSizes) {
+TEST_F(CliRun, RefusesDepthOfAnotherSizeThanColour) {
   ASSERT_TRUE(write_png(image("depth", 0), test::TinyFrame(0).frame.depth).ok());
   expect_refused(run(""), "colour is 160x120 but depth is 96x64");
 }
@@ -323,7 +323,7 @@ TEST_F(CliRun, StampsBackwardsOrDoubled) {
   expect_refused(run(""), "runs backwards; sort the list by stamp");
 }
 
-TEST_F(CliRun, AllZeroDepth) {
+TEST_F(CliRun, ExitsWithThreeWhenAllDepthIsZero) {
   const std::vector<std::uint16_t> none(160 * 120, 0);
   for (int k = 0; k < kFrames; ++k)
     ASSERT_TRUE(write_png(image("depth", k), DepthView{none.data(), 160, 120, 160, 0.0002}).ok());
@@ -334,18 +334,18 @@ TEST_F(CliRun, AllZeroDepth) {
   EXPECT_EQ(lines_of(path("t.txt")), 1);  // the header: no frame has a pose
 }
 
-TEST_F(CliRun, NaNInTheCalibration) {
+TEST_F(CliRun, RefusesACalibrationWithANaN) {
   write_file(sequence_ / "calibration.txt", "525 nan 79.5 59.5 5000\n");
   expect_refused(run(""), "fx and fy must be numbers from 1 to 100000");
 }
 
-TEST_F(CliRun, NoCalibration) {
+TEST_F(CliRun, AsksForACalibrationWhenThereIsNone) {
   fs::remove(sequence_ / "calibration.txt");
   expect_refused(run(""), "no calibration: give --calibration FILE, --camera-model NAME");
   EXPECT_EQ(run("--quiet --fx 131 --fy 131 --cx 79.5 --cy 59.5").exit_code, 0);
 }
 
-TEST_F(CliRun, UnknownDistortionModel) {
+TEST_F(CliRun, RefusesAnUnknownDistortionModel) {
   write_file(
       folder_ / "info.yaml",
       "image_width: 160\nimage_height: 120\ncamera_matrix: {data: [131, 0, 79.5, 0, 131, 59.5, 0, 0, 1]}\n"
@@ -353,7 +353,7 @@ TEST_F(CliRun, UnknownDistortionModel) {
   expect_refused(run("--calibration " + path("info.yaml")), "'thin_prism' is not supported, only plumb_bob");
 }
 
-TEST_F(CliRun, ALensThatFoldsTheImage) {
+TEST_F(CliRun, RefusesALensThatFoldsTheImage) {
   expect_refused(run("--distortion-equidistant -3 0 0 0"), "the equidistant distortion folds the image");
   expect_refused(run("--distortion-rational 0 0 0 0 0 0 0 -90"), "the rational distortion folds the image");
 }

@@ -122,7 +122,7 @@ class PageFunctions : public testing::Test {
   Odometry odometry_;
 };
 
-TEST_F(PageFunctions, StartInStaticMemory) {
+TEST_F(PageFunctions, TrackAFrameWhenStartedInStaticMemory) {
   EXPECT_TRUE(start_in_static_memory(odometry_, rendered_.camera()).ok());
   EXPECT_TRUE(pose_is_new(odometry_.track(rendered_.render(0))));
 }

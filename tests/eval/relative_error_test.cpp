@@ -33,7 +33,7 @@ RpeDelta delta(const char* text) {
   return result;
 }
 
-TEST(RpeDelta, Parses) {
+TEST(RpeDelta, ParsesFramesSecondsAndMetresOnly) {
   EXPECT_EQ(delta("10f").amount, 10);
   EXPECT_EQ(delta("0.5s").unit, RpeDelta::Unit::kSeconds);
   EXPECT_EQ(delta("2m").unit, RpeDelta::Unit::kMetres);

@@ -12,7 +12,7 @@
 namespace plvo::eval {
 namespace {
 
-TEST(Statistics, KnownList) {
+TEST(Statistics, AgreeWithAKnownList) {
   const Statistics s = statistics({4, 1, 3, 2});
   EXPECT_EQ(s.count, 4u);
   EXPECT_DOUBLE_EQ(s.mean, 2.5);

@@ -86,7 +86,7 @@ class CliLiveFaults : public LiveCommand {
   }
 };
 
-TEST_F(CliLiveFaults, UnplugAndReplug) {
+TEST_F(CliLiveFaults, TracksAgainWhenTheSensorIsReplugged) {
   start_live();
   for (int round = 1; round <= 2; ++round) {
     tell_device("unplug");
@@ -118,7 +118,7 @@ TEST_F(CliLiveFaults, ASensorWithoutAnAccelerometerIsTrackedWithoutGravity) {
   EXPECT_FALSE(std::filesystem::exists(path("kept/accelerometer.txt")));
 }
 
-TEST_F(CliLiveFaults, SilenceOfOneStreamOrBoth) {
+TEST_F(CliLiveFaults, NamesTheStreamThatStoppedAndTracksAgain) {
   start_live();
   for (const auto& [command, words] : {std::pair("stop depth", "the depth stream stopped"),
                                        std::pair("stop colour", "the colour stream stopped"),

@@ -51,21 +51,21 @@ class CliLiveSignals : public LiveCommand {
   }
 };
 
-TEST_F(CliLiveSignals, CtrlC) {
+TEST_F(CliLiveSignals, WritesWholeFilesWhenInterrupted) {
   start_live();
   send(SIGINT);
   EXPECT_EQ(wait(), 0) << err();
   expect_whole_files();
 }
 
-TEST_F(CliLiveSignals, Termination) {
+TEST_F(CliLiveSignals, WritesWholeFilesWhenTerminated) {
   start_live();
   send(SIGTERM);
   EXPECT_EQ(wait(), 0) << err();
   expect_whole_files();
 }
 
-TEST_F(CliLiveSignals, RepeatedSignalsOfAClosingTerminal) {
+TEST_F(CliLiveSignals, WritesWholeFilesWhenSignalsRepeat) {
   start_live();
   send(SIGHUP);
   send(SIGHUP);

@@ -178,7 +178,7 @@ TEST_F(OniFileTest, RefusalsGiveTheReason) {
   EXPECT_FALSE(recorder.recording());
 }
 
-TEST_F(OniFileTest, MissingAndBrokenFiles) {
+TEST_F(OniFileTest, ReportsMissingAndBrokenFiles) {
   OpenNi2Options options;
   options.uri = folder_ / "none.oni";
   EXPECT_EQ(camera_.open(options).code(), StatusCode::kNotFound);

@@ -154,13 +154,13 @@ TEST_F(KinectCommand, LiveSaysWhyItCannotHaveTheKinect) {
 // The four diagnoses of the doctor. The one without a driver runs with another OpenNI2 folder.
 class KinectDoctor : public KinectCommand {};
 
-TEST_F(KinectDoctor, NothingPluggedIn) {
+TEST_F(KinectDoctor, ReportsThatNothingIsPluggedIn) {
   EXPECT_EQ(plvo({"doctor"}), 4);
   EXPECT_NE(out_.find("problem  No known RGB-D sensor is plugged in."), std::string::npos) << out_;
   EXPECT_EQ(out_.find("Test capture"), std::string::npos) << out_;
 }
 
-TEST_F(KinectDoctor, KinectWithoutPermission) {
+TEST_F(KinectDoctor, NamesTheUdevRuleWhenPermissionIsDenied) {
   kinect_.plug();
   kinect_.deny();
   EXPECT_EQ(plvo({"doctor", "--seconds", "1"}), 4);
@@ -170,7 +170,7 @@ TEST_F(KinectDoctor, KinectWithoutPermission) {
   EXPECT_NE(out_.find("60-plvo-rgbd.rules"), std::string::npos) << out_;
 }
 
-TEST_F(KinectDoctor, HealthyKinect) {
+TEST_F(KinectDoctor, CapturesFromAHealthyKinect) {
   show_a_room();
   kinect_.plug();
   const int code = plvo({"doctor", "--seconds", "1"});
@@ -182,7 +182,7 @@ TEST_F(KinectDoctor, HealthyKinect) {
   EXPECT_NE(out_.find("freenect://1-1.3"), std::string::npos) << out_;
 }
 
-TEST_F(KinectDoctor, KinectWithoutDriver) {
+TEST_F(KinectDoctor, ReportsTheMissingDriver) {
   kinect_.plug();
   EXPECT_EQ(plvo({"doctor"}), 4);
   EXPECT_NE(out_.find("problem  OpenNI2 has no driver for the Kinect v1 in"), std::string::npos) << out_;

@@ -75,7 +75,7 @@ class SimulatedKinectTest : public testing::Test {
   Reference reference_;
 };
 
-TEST_F(SimulatedKinectTest, NothingPluggedIn) {
+TEST_F(SimulatedKinectTest, ReportsThatNothingIsPluggedIn) {
   EXPECT_EQ(camera_.open(options_).code(), StatusCode::kNotFound);
 }
 
@@ -121,7 +121,7 @@ TEST_F(SimulatedKinectTest, UnregisteredDepthIsEveryPixelsDisparityInMillimetres
 
 // Runs for a bounded time through a wrap of the Kinect's clock. Every stamp is a tick of the sensor, the
 // processor time suffices for the full rate, and memory does not grow.
-TEST_F(SimulatedKinectTest, FullRate) {
+TEST_F(SimulatedKinectTest, ReadsEveryFrameAtFullRateInFlatMemory) {
   const char* given = std::getenv("PLVO_KINECT_SECONDS");
   const double seconds = given != nullptr ? std::atof(given) : 6;
   // The clock wraps after a third of the duration.
@@ -168,7 +168,7 @@ TEST_F(SimulatedKinectTest, FullRate) {
   }
 }
 
-TEST_F(SimulatedKinectTest, UnplugWhileStreamingAndReplug) {
+TEST_F(SimulatedKinectTest, DeliversFramesAgainWhenReplugged) {
   kinect_.plug();
   ASSERT_TRUE(reference_.take());
   open();
@@ -191,7 +191,7 @@ TEST_F(SimulatedKinectTest, UnplugWhileStreamingAndReplug) {
   }
 }
 
-TEST_F(SimulatedKinectTest, PermissionDenied) {
+TEST_F(SimulatedKinectTest, NamesTheUdevRuleWhenPermissionIsDenied) {
   kinect_.plug();
   kinect_.deny();
   const Status status = camera_.open(options_);
@@ -209,7 +209,7 @@ TEST_F(SimulatedKinectTest, CameraInUseByAnotherProgram) {
   EXPECT_TRUE(camera_.open(options_).ok()) << "as soon as the other one lets go";
 }
 
-TEST_F(SimulatedKinectTest, LostAndCorruptedPackets) {
+TEST_F(SimulatedKinectTest, StampsIncreaseWhenPacketsAreLostOrCorrupted) {
   kinect_.plug();
   ASSERT_TRUE(reference_.take());
   open();
@@ -244,7 +244,7 @@ TEST_F(SimulatedKinectTest, LostAndCorruptedPackets) {
   EXPECT_EQ(good, 3);
 }
 
-TEST_F(SimulatedKinectTest, OneStreamStops) {
+TEST_F(SimulatedKinectTest, NamesTheStreamThatStopped) {
   kinect_.plug();
   open();
   ASSERT_TRUE(next_frame().ok());

@@ -9,7 +9,7 @@
 namespace plvo_test {
 namespace {
 
-TEST_F(VirtualDeviceTest, UnplugAndReplug) {
+TEST_F(VirtualDeviceTest, DeliversFramesAgainWhenReplugged) {
   open();
   ASSERT_TRUE(next_frame().ok());
   const std::int64_t before_ns = frame_.stamp_ns;
@@ -37,7 +37,7 @@ TEST_F(VirtualDeviceTest, MissingDeviceIsReported) {
   EXPECT_EQ(status.code(), StatusCode::kNotFound) << status.message();
 }
 
-TEST_F(VirtualDeviceTest, OneStreamStops) {
+TEST_F(VirtualDeviceTest, NamesTheStreamThatStopped) {
   open();
   ASSERT_TRUE(next_frame().ok());
   for (const char* stream : {"colour", "depth"}) {
@@ -80,7 +80,7 @@ TEST_F(VirtualDeviceTest, StallIsATimeoutAndEnds) {
   EXPECT_GE(camera_.counters().missing, 10u) << "the gap is counted";
 }
 
-TEST_F(VirtualDeviceTest, ClockJumpsBack) {
+TEST_F(VirtualDeviceTest, StampsIncreaseWhenTheClockJumpsBack) {
   open();
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(next_frame().ok());
   std::int64_t last_ns = frame_.stamp_ns;
@@ -113,7 +113,7 @@ TEST_F(VirtualDeviceTest, ClockWrapsAsTheKinectsDoes) {
   EXPECT_EQ(camera_.counters().clock_jumps, 0u);
 }
 
-TEST_F(VirtualDeviceTest, DepthArrivesLate) {
+TEST_F(VirtualDeviceTest, PairsImagesWhenDepthArrivesLate) {
   ASSERT_TRUE(device_.command("late 4"));
   open();
   for (int i = 0; i < 10; ++i) {

@@ -225,12 +225,12 @@ TEST_F(WrongMapFile, BytesThatAreNoMap) {
   expect_refused(StatusCode::kDamaged, "this is not a map");
 }
 
-TEST_F(WrongMapFile, AnotherVersion) {
+TEST_F(WrongMapFile, IsRefusedWhenOfAnotherVersion) {
   put(8, std::uint32_t{2});
   expect_refused(StatusCode::kUnsupported, "the map has format 2, and this plvo reads format 1");
 }
 
-TEST_F(WrongMapFile, CutOffAnywhere) {
+TEST_F(WrongMapFile, IsRefusedWhenCutOffAnywhere) {
   const Bytes whole = bytes_;
   for (std::size_t size = 8; size < whole.size(); size += 1 + size / 20) {
     bytes_.assign(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
@@ -238,7 +238,7 @@ TEST_F(WrongMapFile, CutOffAnywhere) {
   }
 }
 
-TEST_F(WrongMapFile, ABitThatFlipped) {
+TEST_F(WrongMapFile, IsRefusedWhenABitFlipped) {
   for (std::size_t at = 12; at < bytes_.size(); at += 1 + at / 20) {
     bytes_[at] ^= std::byte{16};
     expect_refused(StatusCode::kDamaged, "the map is");
@@ -246,13 +246,13 @@ TEST_F(WrongMapFile, ABitThatFlipped) {
   }
 }
 
-TEST_F(WrongMapFile, AnotherCamera) {
+TEST_F(WrongMapFile, IsRefusedWhenOfAnotherCamera) {
   CameraModel camera = ProceduralSequence(kWidth, kHeight).camera();
   camera.pinhole.fx += 1;
   expect_refused(StatusCode::kInvalidArgument, "made with another camera", {12, 200, 64}, camera);
 }
 
-TEST_F(WrongMapFile, AMapWithoutRoomForIt) {
+TEST_F(WrongMapFile, IsRefusedWhenTheMapHasNoRoomForIt) {
   expect_refused(StatusCode::kOutOfMemory, "the map needs room for 12 keyframes", {11, 200, 64});
   expect_refused(StatusCode::kOutOfMemory, "the map needs room", {12, 50, 64});
   expect_refused(StatusCode::kOutOfMemory, "the map needs room", {12, 200, 1});

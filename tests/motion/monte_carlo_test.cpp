@@ -34,15 +34,15 @@ double mean_nees(int n, int m, std::uint64_t seed, int trials, RobustLoss loss =
   return sum / trials;
 }
 
-TEST(MonteCarlo, NeesOfPoints) { EXPECT_TRUE(inside_band(mean_nees(60, 0, 1, 800), 800)); }
-TEST(MonteCarlo, NeesOfLines) { EXPECT_TRUE(inside_band(mean_nees(0, 25, 2, 800), 800)); }
-TEST(MonteCarlo, NeesOfBoth) { EXPECT_TRUE(inside_band(mean_nees(40, 15, 3, 800), 800)); }
-TEST(MonteCarlo, NeesOfBothUnderTheDefaultRobustLoss) {
+TEST(MonteCarlo, NeesOfPointsIsInsideItsBand) { EXPECT_TRUE(inside_band(mean_nees(60, 0, 1, 800), 800)); }
+TEST(MonteCarlo, NeesOfLinesIsInsideItsBand) { EXPECT_TRUE(inside_band(mean_nees(0, 25, 2, 800), 800)); }
+TEST(MonteCarlo, NeesOfBothIsInsideItsBand) { EXPECT_TRUE(inside_band(mean_nees(40, 15, 3, 800), 800)); }
+TEST(MonteCarlo, NeesIsInsideItsBandUnderTheDefaultRobustLoss) {
   EXPECT_TRUE(inside_band(mean_nees(40, 15, 4, 800, RobustLoss::kHuber), 800));
 }
 
 // The whole way, RANSAC and its χ² gate included, with outliers among the matches.
-TEST(MonteCarlo, NeesOfTheEstimatorWithOutliers) {
+TEST(MonteCarlo, NeesIsInsideItsBandWhenMatchesHaveOutliers) {
   constexpr int kTrials = 600;
   Gaussian gaussian(5);
   Bench bench;
@@ -92,9 +92,9 @@ void compare_scatter(int n, int m, std::uint64_t seed) {
     }
 }
 
-TEST(MonteCarlo, ScatterOfPoints) { compare_scatter(50, 0, 21); }
-TEST(MonteCarlo, ScatterOfLines) { compare_scatter(0, 20, 22); }
-TEST(MonteCarlo, ScatterOfBoth) { compare_scatter(30, 12, 23); }
+TEST(MonteCarlo, ScatterOfPointsMatchesTheCovariance) { compare_scatter(50, 0, 21); }
+TEST(MonteCarlo, ScatterOfLinesMatchesTheCovariance) { compare_scatter(0, 20, 22); }
+TEST(MonteCarlo, ScatterOfBothMatchesTheCovariance) { compare_scatter(30, 12, 23); }
 
 }  // namespace
 }  // namespace plvo

@@ -29,7 +29,7 @@ class NoAllocation : public testing::TestWithParam<std::function<Settings()>> {
   }
 };
 
-TEST_P(NoAllocation, OverASequenceWithLostFrames) {
+TEST_P(NoAllocation, HappensOverASequenceWithLostFrames) {
   const auto [config, limits] = GetParam()();
   ProceduralSequence sequence(limits.width, limits.height);
   std::vector<std::byte> memory(required_bytes(limits));

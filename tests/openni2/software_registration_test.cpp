@@ -13,7 +13,7 @@
 namespace plvo {
 namespace {
 
-TEST(SoftwareRegistration, FieldOfViewToFocalLength) {
+TEST(SoftwareRegistration, FocalLengthFollowsFromTheFieldOfView) {
   const Pinhole pinhole = pinhole_from_fov(640, 480, 62.0 * kPi / 180, 48.6 * kPi / 180);
   EXPECT_NEAR(pinhole.fx, 320 / std::tan(31.0 * kPi / 180), 1e-9);
   EXPECT_NEAR(pinhole.fy, 240 / std::tan(24.3 * kPi / 180), 1e-9);

@@ -71,7 +71,7 @@ TEST(Calibration, KeysMayFollowNumbers) {
   EXPECT_TRUE(says(read_text("fx 525\nfx 526\n", c), "'fx' is said twice"));
 }
 
-TEST(Calibration, ByteOrderMarks) {
+TEST(Calibration, IgnoresAByteOrderMark) {
   Calibration c;
   ASSERT_TRUE(read_text("\xEF\xBB\xBF"
                         "525 526 319.5 239.5 1000",

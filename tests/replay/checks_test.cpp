@@ -171,7 +171,7 @@ TEST(FrameCheck, ReportsMirroredDepth) {
 }
 
 // The recorded sequences give no message; when mirrored, those with enough evidence are reported.
-TEST(FrameCheck, RecordedSequences) {
+TEST(FrameCheck, ReportsRecordedSequencesOnlyWhenMirrored) {
   const char* shared = std::getenv("PLVO_SHARED");
   const fs::path data = fs::path(shared == nullptr ? "" : shared) / "data";
   if (!fs::exists(data)) GTEST_SKIP() << "the shared sequences are not here: " << data;

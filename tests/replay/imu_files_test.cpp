@@ -26,7 +26,7 @@ ImuRecording recording(int count) {
   return result;
 }
 
-TEST(ImuFiles, RoundTrip) {
+TEST(ImuFiles, ReadsWhatItWrote) {
   const TemporaryFolder folder;
   const ImuRecording written = recording(50);
   ASSERT_TRUE(write_imu_files(folder.path(), written).ok());

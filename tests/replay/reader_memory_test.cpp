@@ -63,7 +63,7 @@ TEST_F(ReaderMemory, ListsOfImages) {
                             [&] { return says(open(), "rgb.txt line 1: a name of more than 4096 bytes"); });
 }
 
-TEST_F(ReaderMemory, Tables) {
+TEST_F(ReaderMemory, TablesStayWithinTheCeiling) {
   const fs::path path = folder_ / "table.txt";
   const auto trajectory = [&] {
     Trajectory read;
@@ -92,7 +92,7 @@ TEST_F(ReaderMemory, Tables) {
   });
 }
 
-TEST_F(ReaderMemory, CovariancesOfTheShortestNumbers) {
+TEST_F(ReaderMemory, CovariancesOfTheShortestNumbersStayWithinTheCeiling) {
   constexpr std::size_t kMost = kMostRows / 4;
   const auto zeros = [](int count) {
     std::string text;
@@ -115,7 +115,7 @@ TEST_F(ReaderMemory, CovariancesOfTheShortestNumbers) {
   });
 }
 
-TEST_F(ReaderMemory, CalibrationsOfTheShortestEntries) {
+TEST_F(ReaderMemory, CalibrationsOfTheShortestEntriesStayWithinTheCeiling) {
   const auto fill = [](const std::string& start, const std::string& entry) {
     std::string text = start;
     while (text.size() + entry.size() < kMaxCalibrationBytes) text += entry;
@@ -134,7 +134,7 @@ TEST_F(ReaderMemory, CalibrationsOfTheShortestEntries) {
 }
 
 // The decoder keeps the coefficients of the whole image until the last scan.
-TEST_F(ReaderMemory, LargestProgressiveJpeg) {
+TEST_F(ReaderMemory, LargestProgressiveJpegStaysWithinTheCeiling) {
   constexpr int kSide = kMaxImageSide;
   {
     const std::vector<unsigned char> pixels(std::size_t{3} * kSide * kSide, 99);

@@ -51,7 +51,7 @@ TEST(RecordedCamera, RoundTripsFrames) {
   EXPECT_EQ(camera.next(frame).code(), StatusCode::kEndOfStream);
 }
 
-TEST(RecordedCamera, FrameRange) {
+TEST(RecordedCamera, DeliversOnlyTheFramesOfARange) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 5).ok());
   SequenceOptions options;
@@ -200,7 +200,7 @@ TEST(RecordedCamera, ScalesDownWhatIsTooLarge) {
 }
 
 // Depth keeps its size and camera; the colour camera is scaled down.
-TEST(RecordedCamera, ScaledDownWithADepthCameraOfItsOwn) {
+TEST(RecordedCamera, ScalesOnlyColourWhenDepthHasItsOwnCamera) {
   const TemporaryFolder folder;
   write_magnified(folder.path(), 3);
   const TinyFrame expected(0);

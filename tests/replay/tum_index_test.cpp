@@ -104,7 +104,7 @@ TEST(TumIndex, NamesMayHoldSpaces) {
   EXPECT_EQ(lists.pairs[1].colour.file, "rgb/second.jpg");
 }
 
-TEST(TumIndex, ByteOrderMarks) {
+TEST(TumIndex, IgnoresAByteOrderMark) {
   Status status;
   EXPECT_EQ(read_associations("\xEF\xBB\xBF"
                               "1.0 a.png 1.0 b.png\n",

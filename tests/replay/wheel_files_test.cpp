@@ -33,7 +33,7 @@ WheelRecording driven(int count, bool with_sigma = false) {
   return recording;
 }
 
-TEST(WheelFiles, RoundTrip) {
+TEST(WheelFiles, ReadsWhatItWrote) {
   const TemporaryFolder folder;
   for (const bool with_sigma : {false, true}) {
     const WheelRecording written = driven(40, with_sigma);

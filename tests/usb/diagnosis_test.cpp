@@ -67,7 +67,7 @@ TEST(Diagnosis, HealthyKinectGivesOnlyReady) {
   EXPECT_EQ(findings[0].what, "The Kinect v1 camera (port 1-1.3) is ready.");
 }
 
-TEST(Diagnosis, NothingPluggedIn) {
+TEST(Diagnosis, ReportsThatNothingIsPluggedIn) {
   SystemFacts facts = healthy_kinect();
   facts.devices.clear();
   expect_only(facts, FindingCode::kNothingPluggedIn, "No known RGB-D sensor", "12 V");
@@ -100,7 +100,7 @@ TEST(Diagnosis, PermissionNamesTheRule) {
   expect_only(facts, FindingCode::kPermission, "No permission", "usermod -aG video $USER");
 }
 
-TEST(Diagnosis, BusyGoneAndFailedAccess) {
+TEST(Diagnosis, NamesWhyASensorCannotBeOpened) {
   SystemFacts facts = healthy_kinect();
   facts.devices[2].access = UsbAccess::kBusy;
   expect_only(facts, FindingCode::kBusy, "is busy", "fuser -v /dev/bus/usb/001/005");
@@ -123,7 +123,7 @@ TEST(Diagnosis, SoundDriverOnTheAudioDeviceIsNotAProblem) {
   EXPECT_EQ(diagnose(facts).size(), 1u);
 }
 
-TEST(Diagnosis, SlowPorts) {
+TEST(Diagnosis, ReportsPortsThatAreTooSlow) {
   SystemFacts facts = healthy_kinect();
   facts.devices[2].speed_mbps = 12;
   expect_only(facts, FindingCode::kSlowPort, "12 Mbit/s", "USB 2 port");
@@ -160,7 +160,7 @@ TEST(Diagnosis, KinectV1AndKinectV2NeedTheirOwnDrivers) {
   expect_only(facts, FindingCode::kDriverMissing, "no driver for the Kinect v2", "libfreenect2");
 }
 
-TEST(Diagnosis, MissingMisnamedAndBrokenDrivers) {
+TEST(Diagnosis, ReportsMissingMisnamedAndBrokenDrivers) {
   SystemFacts facts = healthy_kinect();
   facts.openni.files = {{"libPS1080.so.0", ""}};
   expect_only(facts, FindingCode::kDriverMissing, "/usr/lib/OpenNI2/Drivers", "libfreenect-dev");
@@ -175,7 +175,7 @@ TEST(Diagnosis, MissingMisnamedAndBrokenDrivers) {
   expect_only(facts, FindingCode::kDriverMisnamed, "liborbbec.so", "liborbbec.so.0");
 }
 
-TEST(Diagnosis, MissingOpenniAndMissingDriverFolder) {
+TEST(Diagnosis, ReportsAMissingOpenniOrDriverFolder) {
   SystemFacts facts = healthy_kinect();
   facts.openni.directory_exists = false;
   expect_only(facts, FindingCode::kDriverFolderMissing, "/usr/lib/OpenNI2/Drivers", "libopenni2-0");
@@ -201,7 +201,7 @@ TEST(Diagnosis, NotesDoNotHideReadiness) {
   EXPECT_NE(find(findings, FindingCode::kUsbfsMemory)->remedy.find("usbfs_memory_mb"), std::string::npos);
 }
 
-TEST(Diagnosis, UnavailableUsb) {
+TEST(Diagnosis, ReportsThatTheUsbIsUnavailable) {
   SystemFacts facts = healthy_kinect();
   facts.devices.clear();
   facts.usb_works = false;

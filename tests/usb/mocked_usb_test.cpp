@@ -60,7 +60,7 @@ class MockedUsb : public ::testing::Test {
   std::string rule_ = "/etc/udev/rules.d/60-plvo-rgbd.rules";
 };
 
-TEST_F(MockedUsb, NothingPluggedIn) {
+TEST_F(MockedUsb, ReportsThatNothingIsPluggedIn) {
   EXPECT_EQ(sentences().find("No known RGB-D sensor is plugged in."), 0u) << sentences();
 }
 
@@ -69,7 +69,7 @@ TEST_F(MockedUsb, UnknownDevicesAreIgnored) {
   EXPECT_TRUE(gather().devices.empty());
 }
 
-TEST_F(MockedUsb, HealthyKinect) {
+TEST_F(MockedUsb, ReportsAHealthyKinectAsReady) {
   plug_kinect();
   EXPECT_EQ(sentences(), "The Kinect v1 camera (port 1-1.3) is ready.|\n");
   const SystemFacts facts = gather();
@@ -80,7 +80,7 @@ TEST_F(MockedUsb, HealthyKinect) {
   EXPECT_EQ(facts.devices[2].bcd, kKinect1414Bcd);
 }
 
-TEST_F(MockedUsb, KinectWithoutPermission) {
+TEST_F(MockedUsb, NamesTheUdevRuleWhenPermissionIsDenied) {
   plug_kinect();
   rule_.clear();
   ASSERT_TRUE(bus_.open().ok());
@@ -93,7 +93,7 @@ TEST_F(MockedUsb, KinectWithoutPermission) {
   EXPECT_EQ(text.find("ready"), std::string::npos) << text;
 }
 
-TEST_F(MockedUsb, KinectWithoutDriver) {
+TEST_F(MockedUsb, ReportsTheMissingDriver) {
   plug_kinect();
   driver_installed_ = false;
   EXPECT_EQ(sentences().find(
@@ -102,7 +102,7 @@ TEST_F(MockedUsb, KinectWithoutDriver) {
       << sentences();
 }
 
-TEST_F(MockedUsb, KinectWithoutTwelveVolts) {
+TEST_F(MockedUsb, ReportsTheMissingTwelveVolts) {
   mock_.plug(kMotor);
   EXPECT_NE(sentences().find("no 12 V supply"), std::string::npos) << sentences();
 }
@@ -115,7 +115,7 @@ TEST_F(MockedUsb, KinectInUseByAnotherProgram) {
   EXPECT_NE(sentences().find("is busy"), std::string::npos) << sentences();
 }
 
-TEST_F(MockedUsb, KinectClaimedByTheWebcamDriver) {
+TEST_F(MockedUsb, NamesTheWebcamDriverThatHoldsTheKinect) {
   mock_.plug(kMotor);
   MockDeviceSpec camera = kCamera;
   camera.kernel_driver = "gspca_kinect";
@@ -123,7 +123,7 @@ TEST_F(MockedUsb, KinectClaimedByTheWebcamDriver) {
   EXPECT_NE(sentences().find("modprobe -r gspca_kinect"), std::string::npos) << sentences();
 }
 
-TEST_F(MockedUsb, KinectOnAFullSpeedPort) {
+TEST_F(MockedUsb, ReportsAFullSpeedPort) {
   mock_.plug(kMotor);
   MockDeviceSpec camera = kCamera;
   camera.speed = "12";
@@ -186,7 +186,7 @@ struct FakeMotor {
   }
 };
 
-TEST_F(MockedUsb, MotorOf1414) {
+TEST_F(MockedUsb, MovesTheMotorOf1414) {
   FakeMotor fake;
   // Gravity along +y with small components along +x and −z; tilt 10 degrees; at the limit.
   fake.state = {0, 0, 0x00, 0x52, 0x03, 0x33, 0xff, 0xae, 20, 1};
@@ -257,7 +257,7 @@ TEST_F(MockedUsb, MotorOnTheHubOfTheCameraIsChosen) {
   EXPECT_EQ(motor.open(bus_, "1-4.3").code(), StatusCode::kNotFound);
 }
 
-TEST_F(MockedUsb, NoMotor) {
+TEST_F(MockedUsb, ReportsThatThereIsNoMotor) {
   ASSERT_TRUE(bus_.open().ok());
   KinectMotor motor;
   EXPECT_EQ(motor.open(bus_).code(), StatusCode::kNotFound);
@@ -313,7 +313,7 @@ struct FakeAudio {
   }
 };
 
-TEST_F(MockedUsb, MotorOf1473ThroughTheAudioDevice) {
+TEST_F(MockedUsb, MovesTheMotorOf1473ThroughTheAudioDevice) {
   FakeAudio fake;
   MockDeviceSpec camera = kCamera;
   camera.bcd = 0x0114;
