@@ -48,7 +48,7 @@ def in_words(text):
 
 
 def pages_and_lists(root):
-    yield from sorted((*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("docs/**/*.ipynb"), *root.glob("*.txt"), *root.glob("*.json")))
+    yield from sorted((*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("docs/**/*.ipynb"), *root.glob("debian/*.*"), *root.glob("*.txt"), *root.glob("*.json")))
 
 
 def check(root):

@@ -150,7 +150,7 @@ TEST_F(CliLiveWheels, NonsenseIsCountedAndHoldsNothingUp) {
 TEST_F(CliLiveWheels, AStreamThatEndsIsTold) {
   const CommandResult result = piped(text_of(60));
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.err.find("standard input has ended; frames go on without wheels"), std::string::npos)
+  EXPECT_NE(result.err.find("standard input has ended; frames are tracked without wheels"), std::string::npos)
       << result.err;
   EXPECT_EQ(summary()["frames"], 45);
   EXPECT_GT(summary()["wheels"]["frames_with"], 10);

@@ -29,7 +29,7 @@ TEST(InputFile, ReadsWholeFiles) {
   // Files of the kernel say that they have no bytes.
   ASSERT_TRUE(read_input_file("/proc/self/status", 1u << 20, bytes).ok());
   EXPECT_GT(bytes.size(), 100u);
-  EXPECT_TRUE(says(read_input_file("/proc/self/status", 10, bytes), "goes on after the 10 bytes"));
+  EXPECT_TRUE(says(read_input_file("/proc/self/status", 10, bytes), "is longer than the 10 bytes"));
   EXPECT_TRUE(bytes.empty());
 }
 

@@ -62,7 +62,7 @@ def test_what_cannot_be_loaded_is_refused(recording, tmp_path):
     for call, code, words in (
         (lambda: room.save(tmp_path / "none.map"), "not_found", "the map holds no keyframe yet"),
         (lambda: room.load(tmp_path / "none.map"), "not_found", "cannot read"),
-        (lambda: room.load(tmp_path / "text.map"), "damaged", "text.map: this is no map"),
+        (lambda: room.load(tmp_path / "text.map"), "damaged", "text.map: this is not a map"),
         (lambda: plvo.Map(camera, keyframes=7), "invalid_argument", "MapLimits::keyframes"),
     ):
         with pytest.raises(plvo.Error, match=words) as error:

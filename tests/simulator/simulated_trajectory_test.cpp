@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recorded trajectory as the driver: its rotations and the shape of its path survive, it stays inside the
-// room's free space, and files that are none are refused in plain words.
+// room's free space, and files that are no trajectories are refused in plain words.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

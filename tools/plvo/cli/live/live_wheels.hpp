@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `--wheels` of a live session: lines of wheel odometry that another program writes while it runs. They are
-// read when a frame is there, without waiting; a frame that no line reaches goes on without wheels, and what
-// is wrong with the lines is said.
+// read when a frame is there, without waiting; a frame that no line reaches is tracked without wheels, and
+// what is wrong with the lines is said.
 #pragma once
 
 #include <cstdint>
@@ -68,7 +68,7 @@ class LiveWheels {
   LineFile file_;
   Status failure_;
   bool first_ = true;                           // no frame has come yet
-  bool missing_ = false;                        // it was said that frames go on without
+  bool missing_ = false;                        // it was said that frames are tracked without wheels
   std::optional<std::int64_t> again_since_ns_;  // while missing_: the first of the frames with lines again
   WheelSummary summary_;
 };
