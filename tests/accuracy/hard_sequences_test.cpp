@@ -106,6 +106,20 @@ TEST(HardSequences, ARobotThatMovesAtADeskDoesNotFollowABoard) {
   }
 }
 
+// The board brings new landmarks, ten times as many as the corridor has. Before they have agreed once, those
+// of the corridor decide (motion_estimator.hpp).
+TEST(HardSequences, ARobotThatMovesInACorridorDoesNotFollowABoard) {
+  for (const std::uint64_t seed : {8, 9}) {
+    SimulatorOptions options = hard_options(60, {"board"});
+    options.seed = seed;
+    options.robot = true;
+    const HardSequence board = track_hard(options);
+    std::printf("seed %d: %.1f mm\n", static_cast<int>(seed), 1e3 * board.error_m);
+    EXPECT_EQ(board.tracked, 59);
+    EXPECT_LT(board.error_m, 0.05);
+  }
+}
+
 // Nine of ten points lie on the part of the robot and say that the camera stands still. What little is seen
 // of the bare hall says that it moves.
 TEST(HardSequences, APartOfTheRobotInABareHallIsNotTakenForRest) {

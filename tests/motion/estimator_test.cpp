@@ -104,6 +104,60 @@ TEST(Estimator, KeepsAMotionWithoutARivalInTheScene) {
   EXPECT_LT(test::nees(estimate.T_current_reference, scene.object, test::inverse(estimate.C_H)), 30);
 }
 
+// A room whose landmarks have agreed before, or not yet, and new landmarks in front of it, three times as
+// many and over the whole image. `apart`: how far they have moved by themselves.
+struct Newcomers {
+  Newcomers(Gaussian& gaussian, bool proven, double apart) {
+    room.truth = boxplus(Se3(), 0.02 * gaussian.vector<6>());
+    const auto add = [&](int n, double z) {
+      for (int i = 0; i < n; ++i)
+        room.add_point(gaussian, {z * gaussian.uniform(-0.5, 0.5), z * gaussian.uniform(-0.4, 0.4),
+                                  z + gaussian.uniform(-0.2, 0.2)});
+    };
+    add(kRoom, 3);
+    if (proven)
+      for (Point3d& point : room.points_reference) point.record.add(true);
+    const Se3 T_room = room.truth;
+    room.truth = object = boxplus(T_room, Vector6(apart, 0, 0, 0, 0, 0));
+    add(3 * kRoom, 2);
+    room.truth = T_room;
+  }
+  static constexpr int kRoom = 24;
+  SimulatedPair room;
+  Se3 object;
+};
+
+TEST(Estimator, NewLandmarksDoNotOutvoteProvenOnes) {
+  Gaussian gaussian(31);
+  Bench bench;
+  int followed = 0;
+  for (std::uint64_t trial = 0; trial < 20; ++trial) {
+    for (const bool proven : {true, false}) {
+      const Newcomers scene(gaussian, proven, 0.1);
+      for (const MotionStart& start : {MotionStart(&scene.object, {}, true), MotionStart(nullptr)}) {
+        const MotionEstimate estimate = bench.estimate(scene.room, {}, trial, start);
+        ASSERT_EQ(estimate.status, StatusCode::kOk) << "trial " << trial;
+        const double nees =
+            test::nees(estimate.T_current_reference, scene.room.truth, test::inverse(estimate.C_H));
+        if (proven)
+          EXPECT_LT(nees, 30) << "trial " << trial;
+        else
+          followed += nees > 30 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(followed, 30);  // of 40: without records nothing tells the two apart
+}
+
+TEST(Estimator, NewLandmarksThatAgreeCountAsMuchAsProvenOnes) {
+  Gaussian gaussian(32);
+  Bench bench;
+  const Newcomers scene(gaussian, true, 0);
+  const MotionEstimate estimate = bench.estimate(scene.room, {}, 1, MotionStart(nullptr));
+  ASSERT_EQ(estimate.status, StatusCode::kOk);
+  EXPECT_GT(estimate.inliers[0], 3 * Newcomers::kRoom);
+}
+
 TEST(Estimator, NoMatchesGiveTooFewFeatures) {
   Bench bench;
   const SimulatedPair pair;

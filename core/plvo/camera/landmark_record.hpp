@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The record of a landmark of a reference: in how many frames it agreed with the camera's motion. A landmark
 // that mostly did not is part of a moving object, is a reflection, or has a wrong depth. It is still matched
-// and tested, but it is no evidence for a motion (coverage.hpp).
+// and tested, but it is no evidence for a motion (coverage.hpp). A landmark that mostly did is proven: where
+// new landmarks contradict the proven ones, the proven ones decide (motion_estimator.hpp).
 #pragma once
 
 #include <algorithm>
@@ -18,6 +19,7 @@ class LandmarkRecord {
   // Frames in which it agreed with the motion, minus those in which it did not; within ±kMost.
   int balance() const { return balance_; }
   bool trusted() const { return balance_ >= 0; }
+  bool proven() const { return balance_ > 0; }
   // Takes in one frame in which the landmark was found.
   void add(bool agreed) { *this = LandmarkRecord(balance_ + (agreed ? 1 : -1)); }
 

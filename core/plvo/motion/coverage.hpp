@@ -29,19 +29,19 @@ constexpr bool are_comparable(double evidence, double other) {
   return evidence > kComparableShare * other && other > kComparableShare * evidence;
 }
 
-// The part of the scene that a feature represents: its position in camera coordinates, z > 0, and the length
-// of its image in the plane z = 1 (0 for a point).
+// The part of the scene that a feature represents: its position in camera coordinates, z > 0, the length of
+// its image in the plane z = 1 (0 for a point), and the record of its landmark.
 struct Extent {
   Vector3 middle;
   double length = 0;
-  bool trusted = true;  // the record of its landmark
+  LandmarkRecord record = LandmarkRecord();
 };
 
-inline Extent extent_of(const Point3d& point) { return {point.p, 0, point.record.trusted()}; }
+inline Extent extent_of(const Point3d& point) { return {point.p, 0, point.record}; }
 // Always inlined: used by code that is compiled for speed and by code that is compiled for size.
 [[gnu::always_inline]] inline Extent extent_of(const Line3d& line) {
   const Vector3 image = line.b / line.b.z() - line.a / line.a.z();
-  return {0.5 * (line.a + line.b), sqrt(image.squaredNorm()), line.record.trusted()};
+  return {0.5 * (line.a + line.b), sqrt(image.squaredNorm()), line.record};
 }
 
 // The features of one frame. First count all of them, then ask for the evidence of each.
@@ -50,7 +50,7 @@ class Coverage {
   Coverage() { clear(); }
   void clear() { crowd_.fill(0); }
   void count(const Extent& extent) {
-    if (!extent.trusted) return;
+    if (!extent.record.trusted()) return;
     std::uint8_t& features = crowd_[ImageCells::at(extent.middle)];
     if (features < 255) ++features;
   }
@@ -58,7 +58,7 @@ class Coverage {
   // a line, divided by the number of features in the cell. A feature that was not counted has its cell for
   // itself.
   double evidence(const Extent& extent) const {
-    if (!extent.trusted) return 0;
+    if (!extent.record.trusted()) return 0;
     const double cells = std::min(1 + extent.length / ImageCells::kWidth, kMostCellsOfALine);
     return extent.middle.z() * cells / std::max(crowd_[ImageCells::at(extent.middle)], std::uint8_t{1});
   }

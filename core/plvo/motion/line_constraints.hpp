@@ -76,7 +76,7 @@ class LineConstraints final : public ConstraintSet {
   Primitive primitive(std::size_t i) const override;
   Extent extent(std::size_t i) const override {
     Extent extent = extent_of(current_[matches_[i].current]);
-    extent.trusted = reference_[matches_[i].reference].record.trusted();
+    extent.record = reference_[matches_[i].reference].record;
     return extent;
   }
   // Takes the reference measurement as the landmark. The result equals that of the eliminated residual to

@@ -18,6 +18,9 @@ constexpr double kWiderThanEstimated = 9;
 // permanently.
 constexpr double kFarSigmas = 10;
 constexpr int kMaxWideRounds = 4;
+// New landmarks contradict the proven ones if the motion of all matches has a squared Mahalanobis distance
+// above this from that of the proven ones: a χ² test with six degrees of freedom at 0.99.
+constexpr double kMostPlausibleOfAll = 16.8;
 // The estimate fails with kNoConsensus if a smaller share of the usable matches are inliers.
 constexpr double kMinInlierShare = 0.1;
 // If a prior contradicts the first motion, another motion is taken that the prior does not contradict and
@@ -101,7 +104,6 @@ class ConsensusSolver {
         estimate_(estimate),
         kernels_(MotionProblem::make_kernels(terms, config.robust ? RobustLoss::kHuber : RobustLoss::kNone)),
         ransac_(sets, terms, solving.references, config, kernels_, scratch, solving),
-        least_inliers_(kMinInlierShare * static_cast<double>(ransac_.usable())),
         shared_(start.shared) {}
 
   StatusCode solve(const LmOptions& lm) {
@@ -121,7 +123,8 @@ class ConsensusSolver {
 
  private:
   bool has_consensus() const {
-    return ransac_.inliers() >= config_.min_inliers && ransac_.inliers() >= least_inliers_;
+    return ransac_.inliers() >= config_.min_inliers &&
+           ransac_.inliers() >= kMinInlierShare * static_cast<double>(ransac_.leading());
   }
 
   // Refines T_ over the flagged inliers.
@@ -166,9 +169,32 @@ class ConsensusSolver {
     return approach(scale);
   }
 
-  // Starts from the prediction, if that was estimated. Otherwise, and if its consensus is too small, RANSAC
-  // finds the start.
+  // An object that comes into view brings new landmarks, and it may bring more of them than the room has. So
+  // the first motion is estimated from proven landmarks alone, if there are enough, and then from all. If the
+  // second contradicts the first, the first is taken.
   StatusCode find_first() {
+    if (ransac_.let_proven_lead() && find_leading() == StatusCode::kOk && has_consensus()) {
+      const Se3 proven = T_, first = first_;
+      const double scale = first_scale_;
+      const Matrix6 information = solving_.solver.hessian();
+      ransac_.let_all_lead();
+      if (find_leading() == StatusCode::kOk) {
+        const Vector6 apart = boxminus(T_, proven);
+        if (apart.dot(information * apart) <= kMostPlausibleOfAll) return StatusCode::kOk;
+      }
+      (void)ransac_.let_proven_lead();
+      first_ = first;
+      first_scale_ = scale;
+      if (approach_from(proven, kWiderThanRefined) == StatusCode::kOk && has_consensus())
+        return StatusCode::kOk;
+    }
+    ransac_.let_all_lead();
+    return find_leading();
+  }
+
+  // The motion of the matches that lead. Starts from the prediction, if that was estimated. Otherwise, and if
+  // its consensus is too small, RANSAC finds the start.
+  StatusCode find_leading() {
     if (start_.estimated) {
       first_ = *start_.prediction;
       first_scale_ = kWiderThanEstimated;
@@ -228,7 +254,6 @@ class ConsensusSolver {
   MotionEstimate& estimate_;
   MotionProblem::Kernels kernels_;
   Ransac ransac_;
-  double least_inliers_;
   NuisanceParameters shared_;
   Se3 T_;
   Se3 first_;  // start of the first motion, and the scale of its first thresholds

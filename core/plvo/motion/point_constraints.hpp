@@ -37,9 +37,7 @@ class PointConstraints final : public ConstraintSet {
   int dof() const override { return 3; }
   bool usable(std::size_t i) const override { return usable_[i] != 0; }
   Primitive primitive(std::size_t i) const override;
-  Extent extent(std::size_t i) const override {
-    return {current_point(i).p, 0, reference_point(i).record.trusted()};
-  }
+  Extent extent(std::size_t i) const override { return {current_point(i).p, 0, reference_point(i).record}; }
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
   void begin(const Se3&, const NuisanceParameters&, const RobustKernel&, std::size_t) override {}
   double linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,

@@ -49,10 +49,32 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     threshold_[s] = chi_square_quantile(set.dof(), kInlierProbability);
     for (std::size_t i = 0; i < set.size() && n < scratch.size(); ++i)
       if (set.usable(i))
-        scratch[n++] = {static_cast<std::uint16_t>(s & 63), 0, static_cast<std::uint16_t>(i), 0};
+        scratch[n++] = {static_cast<std::uint16_t>(s & 31), 1, 0, static_cast<std::uint16_t>(i), 0};
   }
-  candidates_ = scratch.first(n);
+  candidates_ = leading_ = judged_ = scratch.first(n);
   weigh();
+}
+
+bool Ransac::let_proven_lead() {
+  for (RansacCandidate& candidate : candidates_)
+    candidate.leads = sets_[candidate.set]->extent(candidate.index).record.proven() ? 1 : 0;
+  gather_leading();
+  if (static_cast<int>(leading()) >= config_.min_inliers) return true;
+  let_all_lead();
+  return false;
+}
+
+void Ransac::let_all_lead() {
+  for (RansacCandidate& candidate : candidates_) candidate.leads = 1;
+  gather_leading();
+}
+
+// Moves the candidates that lead to the front.
+void Ransac::gather_leading() {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < candidates_.size(); ++k)
+    if (candidates_[k].leads != 0) std::swap(candidates_[k], candidates_[n++]);
+  leading_ = candidates_.first(n);
 }
 
 // Not inlined: the cells would otherwise stay on the stack while the motion is solved for.
@@ -88,7 +110,7 @@ bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummar
   start(Gain::kMatch, summary);
   Se3 best;
   if (prediction != nullptr && prediction->is_finite()) consider(*prediction, best, summary);
-  sample(seed, usable(), prediction != nullptr ? prediction->R : Matrix3::Identity(), best, summary);
+  sample(seed, leading(), prediction != nullptr ? prediction->R : Matrix3::Identity(), best, summary);
   if (!(summary.score > 0)) return false;
   T = best;
   return true;
@@ -151,10 +173,10 @@ bool Ransac::is_promising(const Se3& T, std::size_t n) const {
   return agreeing >= kLeastPromising;
 }
 
-// Moves the candidates that are no inliers to the front. Returns their number.
+// Moves the leading candidates that are no inliers to the front. Returns their number.
 std::size_t Ransac::move_inliers_back() {
   std::size_t n = 0;
-  for (std::size_t k = 0; k < usable(); ++k) {
+  for (std::size_t k = 0; k < leading(); ++k) {
     const RansacCandidate candidate = candidates_[k];
     if (sets_[candidate.set]->inliers()[candidate.index] != 0) continue;
     candidates_[k] = candidates_[n];
@@ -195,13 +217,13 @@ bool Ransac::consensus_fixes_motion(std::uint64_t seed) {
     candidates_[k] = candidates_[n];
     candidates_[n++] = inlier;
   }
-  if (n < 3) return false;
+  bool fixes = false;
   Random random(seed, 2);
   Se3 unused;
-  for (int i = 0; i < kDegeneracyDraws; ++i)
-    if (solve_minimal_set(draw(random, n), Matrix3::Identity(), unused) != MinimalSetStatus::kDegenerate)
-      return true;
-  return false;
+  for (int i = 0; i < kDegeneracyDraws && n >= 3 && !fixes; ++i)
+    fixes = solve_minimal_set(draw(random, n), Matrix3::Identity(), unused) != MinimalSetStatus::kDegenerate;
+  gather_leading();
+  return fixes;
 }
 
 // Scores a hypothesis and refines it if it may become the best. If it does, stores it in `best` and returns
@@ -221,7 +243,7 @@ bool Ransac::rate(const Se3& T, Se3& best, RansacSummary& summary) {
   double refined_score_as_fresh = 0;
   int inliers = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
-  for (const RansacCandidate& candidate : candidates_) {
+  for (const RansacCandidate& candidate : leading_) {
     const double threshold = threshold_[candidate.set];
     const double gained = gain(candidate);
     const ConstraintSet& set = *sets_[candidate.set];
@@ -245,9 +267,9 @@ bool Ransac::rate(const Se3& T, Se3& best, RansacSummary& summary) {
 double Ransac::score(const Se3& T, double to_beat) const {
   double possible = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
-  for (const RansacCandidate& candidate : candidates_)
+  for (const RansacCandidate& candidate : leading_)
     possible += gain(candidate) * kFreshScale * threshold_[candidate.set];
-  for (const RansacCandidate& candidate : candidates_) {
+  for (const RansacCandidate& candidate : leading_) {
     const double threshold = kFreshScale * threshold_[candidate.set];
     const ConstraintSet& set = *sets_[candidate.set];
     const double s = set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold);
@@ -260,7 +282,7 @@ double Ransac::score(const Se3& T, double to_beat) const {
 
 void Ransac::refine(Se3& T) {
   const int kept_inliers = inliers_;
-  const std::size_t stride = candidates_.size() / kRefinementMatches + 1;
+  const std::size_t stride = leading() / kRefinementMatches + 1;
   for (const double scale : kRoundScales) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
@@ -274,13 +296,14 @@ void Ransac::refine(Se3& T) {
 
 void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   inliers_ = 0;
+  judged_ = scale > 1 || stride > 1 ? leading_ : candidates_;
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     const RansacCandidate& candidate = candidates_[k];
     ConstraintSet& set = *sets_[candidate.set];
     const double threshold = scale * threshold_[candidate.set];
     const std::uint8_t flag =
-        k % stride == 0 &&
+        k < judged_.size() && k % stride == 0 &&
                 set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold
             ? 1
             : 0;
@@ -295,14 +318,14 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   const auto is_inlier = [&](const RansacCandidate& candidate) {
     return sets_[candidate.set]->inliers()[candidate.index] != 0;
   };
-  for (const RansacCandidate& candidate : candidates_) around.count(candidate.cell, is_inlier(candidate));
+  for (const RansacCandidate& candidate : judged_) around.count(candidate.cell, is_inlier(candidate));
   const auto is_isolated = [&](const RansacCandidate& candidate) {
     return is_inlier(candidate) && around.is_isolated(candidate.cell);
   };
   int left = inliers_;
-  for (const RansacCandidate& candidate : candidates_) left -= is_isolated(candidate) ? 1 : 0;
+  for (const RansacCandidate& candidate : judged_) left -= is_isolated(candidate) ? 1 : 0;
   if (left == inliers_ || 2 * left < inliers_ || left < config_.min_inliers) return;
-  for (const RansacCandidate& candidate : candidates_)
+  for (const RansacCandidate& candidate : judged_)
     if (is_isolated(candidate)) sets_[candidate.set]->inliers()[candidate.index] = 0;
   inliers_ = left;
 }
@@ -310,7 +333,7 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
 int Ransac::iterations_needed() const {
   // 1 − (1 − w³)^k ≥ confidence, where w is the share of inliers among the matches that sets are drawn from.
   const double w =
-      gain_ == Gain::kMatch ? static_cast<double>(inliers_) / static_cast<double>(usable()) : kShareBeside;
+      gain_ == Gain::kMatch ? static_cast<double>(inliers_) / static_cast<double>(leading()) : kShareBeside;
   const double all_good = w * w * w;
   if (!(all_good > 1e-9)) return config_.max_ransac_iterations;
   if (all_good > 1 - 1e-9) return 1;

@@ -12,6 +12,9 @@
 //
 // If a motion explains less of the evidence (coverage.hpp) than the camera's motion does in a world at rest,
 // run_beside() searches for another one among the matches that it leaves.
+//
+// Either all matches lead the search, or those of proven landmarks alone (landmark_record.hpp). The others
+// are then inliers only if they agree with the motion that was found.
 #pragma once
 
 #include <array>
@@ -35,12 +38,13 @@ struct RansacSummary {
 
 // A match that may be an inlier.
 struct RansacCandidate {
-  std::uint16_t set : 6 = 0;    // its constraint set
+  std::uint16_t set : 5 = 0;    // its constraint set
+  std::uint16_t leads : 1 = 1;  // takes part in the search, not in the last test alone
   std::uint16_t cell : 10 = 0;  // its cell of the image
   std::uint16_t index = 0;
   float evidence = 0;
 };
-static_assert(ImageCells::kCount == 1 << 10);
+static_assert(ImageCells::kCount == 1 << 10 && kMaxConstraintSets <= 1 << 5);
 
 constexpr std::span<RansacCandidate> take_ransac_scratch(Arena& memory, std::size_t max_matches) {
   return memory.take<RansacCandidate>("motion: candidates", max_matches);
@@ -55,8 +59,13 @@ class Ransac {
          const MotionConfig& config, const MotionProblem::Kernels& kernels,
          std::span<RansacCandidate> scratch, MotionSolver& solver);
 
-  // Number of all usable matches.
+  // Number of all usable matches, and of those that lead. At first all do.
   std::size_t usable() const { return candidates_.size(); }
+  std::size_t leading() const { return leading_.size(); }
+  // Lets only the matches of proven landmarks lead. Returns false, and lets all lead, if they are too few for
+  // a consensus. Both functions reorder the scratch.
+  bool let_proven_lead();
+  void let_all_lead();
 
   // Writes the motion of the most matches to T. Returns false if no hypothesis has a score above zero.
   bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
@@ -65,7 +74,8 @@ class Ransac {
   // hypothesis. Returns false, and leaves T, if no better one is found. Reorders the scratch.
   bool run_beside(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
 
-  // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`.
+  // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`. With a
+  // scale above 1, the test leads to a motion: only matches that lead can pass.
   void judge(const Se3& T, double scale) { judge(T, scale, 1); }
   // Clears the flags of the inliers that are isolated among outliers (neighbourhoods.hpp), unless most are.
   void leave_isolated_out();
@@ -87,6 +97,7 @@ class Ransac {
     kEvidence,  // run_beside(): by its evidence, unless a term contradicts the motion
   };
   void weigh();
+  void gather_leading();
   void start(Gain gain, RansacSummary& summary);
   bool sample(std::uint64_t seed, std::size_t n, const Matrix3& R_expected, Se3& best,
               RansacSummary& summary);
@@ -111,7 +122,9 @@ class Ransac {
   MotionConfig config_;
   MotionProblem::Kernels kernels_;
   MotionSolver& solver_;
-  std::span<RansacCandidate> candidates_;
+  std::span<RansacCandidate> candidates_;  // first those that lead
+  std::span<RansacCandidate> leading_;
+  std::span<RansacCandidate> judged_;  // by the last judge()
   int inliers_ = 0;
   double evidence_ = 0;  // of all candidates
   Gain gain_ = Gain::kMatch;

@@ -7,7 +7,11 @@
 namespace plvo {
 namespace {
 
-// A new landmark inherits at most this balance, and at least −1: one frame decides whether it is trusted.
+// A new landmark this near to one that was found is that landmark again, and has its record: detectors find a
+// corner again within two to three pixels.
+constexpr double kSameLandmark_px = 3;
+// Any other new landmark inherits at most this balance from its part of the image, and at least −1: one frame
+// decides whether it is trusted.
 constexpr int kMostInherited = 3;
 constexpr int kLeastInherited = -1;
 
@@ -77,11 +81,27 @@ void note_records(const ReferenceTracks& tracks, FrameFeatures& reference) {
   }
   for (std::size_t i = 0; i < features.points.keypoints.size(); ++i) {
     const Keypoint& keypoint = features.points.keypoints[i];
-    features.points.points[i].record =
-        cells.inherited(Vector2(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v)));
+    const Vector2 at(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v));
+    LandmarkRecord& record = features.points.points[i].record;
+    record = cells.inherited(at);
+    double nearest = kSameLandmark_px * kSameLandmark_px;
+    for (std::size_t r = 0; r < references.size(); ++r) {
+      const ReferenceTracks& tracks = tracking.tracks(r);
+      for (const Match& match : tracks.points.matches.span()) {
+        const double distance = (tracks.points.pixels[match.current] - at).squaredNorm();
+        if (distance >= nearest) continue;
+        nearest = distance;
+        record = window[references[r]].features.points.points[match.reference].record;
+      }
+    }
   }
   for (std::size_t i = 0; i < features.lines.count_3d; ++i)
     features.lines.lines[i].record = cells.inherited(features.lines.lines[i]);
+  // A matched line is that landmark again. The keyframe, the first reference, knows it longest.
+  for (std::size_t r = references.size(); r-- > 0;)
+    for (const Match& match : tracking.tracks(r).lines.span())
+      features.lines.lines[match.current].record =
+          window[references[r]].features.lines.lines[match.reference].record;
 }
 
 }  // namespace plvo

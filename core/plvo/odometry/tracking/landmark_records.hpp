@@ -17,9 +17,10 @@ namespace plvo {
 // of the frame's estimate.
 void note_records(const ReferenceTracks& tracks, FrameFeatures& reference);
 
-// Gives records to the landmarks of the current frame, which becomes a reference. Each gets the mean record
-// of the landmarks that were found in the same part of the image; if this is negative, the new landmark is
-// not trusted at first. references: their slots in the window. tracking: the frame's matches with them.
+// Gives records to the landmarks of the current frame, which becomes a reference. One that is a landmark of a
+// reference again keeps its record. Any other gets the mean record of the landmarks that were found in the
+// same part of the image; if this is negative, the new landmark is not trusted at first. references: their
+// slots in the window. tracking: the frame's matches with them.
 void inherit_records(const Window& window, std::span<const int> references, const ReferenceTracking& tracking,
                      const CurrentFrame& current);
 
