@@ -35,8 +35,8 @@ constexpr const char* kEvalHelp =
     "  plvo eval --gt sequence/groundtruth.txt --est trajectory.txt\n"
     "  plvo eval --gt chess/seq-01 --est trajectory.txt     the poses of numbered frames\n"
     "  plvo eval --gt recording.bag --est trajectory.txt    recording-groundtruth.txt beside the bag\n"
-    "  plvo eval --gt sequence/groundtruth.txt --est t.txt --est-covariance c.txt --report comparison.html\n"
-    "  plvo eval --gt sequence/groundtruth.txt --est a.txt b.txt --plot sequence.svg   ranked, one picture\n";
+    "  plvo eval --gt sequence/groundtruth.txt --est t.txt --est-covariance c.txt --report report.html\n"
+    "  plvo eval --gt sequence/groundtruth.txt --est a.txt b.txt --plot all.svg   ranked, one picture\n";
 
 constexpr int kMostEstimates = 100;
 
