@@ -10,6 +10,7 @@
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/base/match.hpp"
 #include "plvo/points/keypoint.hpp"
+#include "plvo/points/keypoint_buckets.hpp"
 
 namespace plvo {
 
@@ -31,20 +32,11 @@ struct BestMatch {
   std::uint16_t distance;
 };
 
-// Side of the square buckets into which the current keypoints are sorted, so that a search touches only a
-// few.
-inline constexpr int kBucketPx = 32;
-constexpr std::size_t point_match_buckets(int width, int height) {
-  return static_cast<std::size_t>((width + kBucketPx - 1) / kBucketPx) *
-         static_cast<std::size_t>((height + kBucketPx - 1) / kBucketPx);
-}
-
 // Reserves the scratch of match_points for this number of keypoints per frame and this image size.
 constexpr void reserve_point_match(Arena& memory, int keypoints, int width, int height) {
   const ScratchScope scope(memory);
   const auto n = static_cast<std::size_t>(keypoints);
-  memory.take<std::uint16_t>("point match", n);
-  memory.take<std::uint16_t>("point match", point_match_buckets(width, height) + 1);
+  KeypointBuckets::reserve(memory, n, width, height);
   memory.take<BestMatch>("point match", n);
   memory.take<BestMatch>("point match", n);
 }

@@ -7,8 +7,8 @@
 namespace plvo {
 namespace {
 
-// A new landmark this near to one that was found is that landmark again, and has its record: detectors find a
-// corner again within two to three pixels.
+// A new landmark this near to one that was found is taken to be that landmark again, and has its record. The
+// detector places a corner on a whole pixel of its pyramid level, so it is not found again at the same place.
 constexpr double kSameLandmark_px = 3;
 // Any other new landmark inherits at most this balance from its part of the image, and at least −1: one frame
 // decides whether it is trusted.
@@ -57,6 +57,34 @@ class RecordsByCell {
   std::array<Cell, CarriedCells::kCells> all_{};
 };
 
+// Gives each keypoint the record of the landmark that was found nearest to it, if that is near enough.
+void keep_records(const Window& window, std::span<const int> references, const ReferenceTracking& tracking,
+                  const CurrentFrame& current) {
+  PointFeatures& points = current.features.points;
+  Arena& scratch = current.context.scratch;
+  const ScratchScope scope(scratch);
+  const CameraModel& camera = current.context.camera;
+  const KeypointBuckets buckets(points.keypoints, camera.width, camera.height, scratch);
+  const std::span<double> nearest = scratch.take<double>("same landmarks", points.keypoints.size());
+  if (nearest.size() < points.keypoints.size()) return;
+  std::fill(nearest.begin(), nearest.end(), kSameLandmark_px * kSameLandmark_px);
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    const std::span<const Point3d> landmarks = window[references[r]].features.points.points;
+    const PointTracks& tracks = tracking.tracks(r).points;
+    for (const Match& match : tracks.matches.span()) {
+      const Vector2& found = tracks.pixels[match.current];
+      buckets.for_each_near(found.x(), found.y(), kSameLandmark_px, [&](std::uint16_t i) {
+        const Keypoint& keypoint = points.keypoints[i];
+        const Vector2 at(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v));
+        const double distance = (found - at).squaredNorm();
+        if (distance >= nearest[i]) return;
+        nearest[i] = distance;
+        points.points[i].record = landmarks[match.reference].record;
+      });
+    }
+  }
+}
+
 }  // namespace
 
 void note_records(const ReferenceTracks& tracks, FrameFeatures& reference) {
@@ -81,20 +109,10 @@ void note_records(const ReferenceTracks& tracks, FrameFeatures& reference) {
   }
   for (std::size_t i = 0; i < features.points.keypoints.size(); ++i) {
     const Keypoint& keypoint = features.points.keypoints[i];
-    const Vector2 at(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v));
-    LandmarkRecord& record = features.points.points[i].record;
-    record = cells.inherited(at);
-    double nearest = kSameLandmark_px * kSameLandmark_px;
-    for (std::size_t r = 0; r < references.size(); ++r) {
-      const ReferenceTracks& tracks = tracking.tracks(r);
-      for (const Match& match : tracks.points.matches.span()) {
-        const double distance = (tracks.points.pixels[match.current] - at).squaredNorm();
-        if (distance >= nearest) continue;
-        nearest = distance;
-        record = window[references[r]].features.points.points[match.reference].record;
-      }
-    }
+    features.points.points[i].record =
+        cells.inherited(Vector2(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v)));
   }
+  keep_records(window, references, tracking, current);
   for (std::size_t i = 0; i < features.lines.count_3d; ++i)
     features.lines.lines[i].record = cells.inherited(features.lines.lines[i]);
   // A matched line is that landmark again. The keyframe, the first reference, knows it longest.

@@ -20,7 +20,7 @@ void note_records(const ReferenceTracks& tracks, FrameFeatures& reference);
 // Gives records to the landmarks of the current frame, which becomes a reference. One that is a landmark of a
 // reference again keeps its record. Any other gets the mean record of the landmarks that were found in the
 // same part of the image; if this is negative, the new landmark is not trusted at first. references: their
-// slots in the window. tracking: the frame's matches with them.
+// slots in the window. tracking: the frame's matches with them. Scratch: not more than that of match_points.
 void inherit_records(const Window& window, std::span<const int> references, const ReferenceTracking& tracking,
                      const CurrentFrame& current);
 
