@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the accuracy gate compares with: for each row (a sequence and a kind of features) the mean over
 // several starts of each figure, and the standard deviation of one start. The starts differ in the first
-// frame and by a twentieth of a pixel in the principal point; what they differ by is chance.
+// frame, by a twentieth of a pixel in the principal point, and in RANSAC's seed; what they differ by is
+// chance.
 #pragma once
 
 #include <filesystem>

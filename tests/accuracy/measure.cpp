@@ -62,12 +62,14 @@ Figures figures_of(const Sequence& sequence, const Track& track) {
 
 Status measure(const Sequence& sequence, const Config& config, std::vector<Figures>& starts) {
   starts.clear();
+  Config seeded = config;
   for (int shift = 0; shift < kPrincipalPoints; ++shift) {
     CameraModel camera = sequence.camera;
     camera.pinhole.cx += shift * kPrincipalPointStep_px;
     for (std::size_t first = 0; first < kFirstFrames; ++first) {
       Track one;
-      if (Status status = track(sequence, first, camera, config, one); !status.ok()) return status;
+      seeded.seed = starts.size() + 1;
+      if (Status status = track(sequence, first, camera, seeded, one); !status.ok()) return status;
       starts.push_back(figures_of(sequence, one));
     }
   }

@@ -10,7 +10,8 @@
 
 namespace plvo::accuracy {
 
-// Six starts: the first three frames, each with two principal points a twentieth of a pixel apart.
+// Six starts: the first three frames, each with two principal points a twentieth of a pixel apart. Each has
+// its own seed of RANSAC: with the same seed, all six would soon follow the same path.
 Status measure(const Sequence& sequence, const Config& config, std::vector<Figures>& starts);
 
 }  // namespace plvo::accuracy

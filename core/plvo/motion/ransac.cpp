@@ -28,6 +28,8 @@ constexpr int kDegeneracyDraws = 200;
 constexpr double kShareBeside = 0.4;
 constexpr std::size_t kTested = 16;
 constexpr int kLeastPromising = 5;
+// New matches are not doubted if they are fewer than this share of the proven ones: they cannot outvote them.
+constexpr double kFewNew = 0.25;
 constexpr double kInlierProbability = 0.99;  // that a true match of any kind passes the χ² test
 constexpr double kRansacConfidence = 0.999;  // that a set of true matches was drawn before stopping
 
@@ -59,7 +61,10 @@ bool Ransac::let_proven_lead() {
   for (RansacCandidate& candidate : candidates_)
     candidate.leads = sets_[candidate.set]->extent(candidate.index).record.proven() ? 1 : 0;
   gather_leading();
-  if (static_cast<int>(leading()) >= config_.min_inliers) return true;
+  const auto others = static_cast<double>(candidates_.size() - leading());
+  if (static_cast<int>(leading()) >= config_.min_inliers &&
+      others >= kFewNew * static_cast<double>(leading()))
+    return true;
   let_all_lead();
   return false;
 }

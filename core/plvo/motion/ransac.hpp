@@ -62,8 +62,8 @@ class Ransac {
   // Number of all usable matches, and of those that lead. At first all do.
   std::size_t usable() const { return candidates_.size(); }
   std::size_t leading() const { return leading_.size(); }
-  // Lets only the matches of proven landmarks lead. Returns false, and lets all lead, if they are too few for
-  // a consensus. Both functions reorder the scratch.
+  // Lets only the matches of proven landmarks lead. Returns false, and lets all lead, if the proven are too
+  // few for a consensus, or the others too few to outvote them. Both functions reorder the scratch.
   bool let_proven_lead();
   void let_all_lead();
 
