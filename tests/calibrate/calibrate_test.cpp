@@ -216,8 +216,8 @@ TEST(TimingReport, ThePageShowsEveryCurveAndLoadsNothing) {
   result.timing = {-0.015, 0.02, 0.026};
   result.sigma_s = {0.0004, 0.001, std::numeric_limits<double>::infinity()};
   for (std::vector<CurvePoint>& curve : result.curves) curve = {{-0.02, 9}, {-0.015, 7}, {-0.01, 9.5}};
-  EXPECT_TRUE(is_told(result, 1));
-  EXPECT_FALSE(is_told(result, 2));
+  EXPECT_TRUE(is_determined(result, 1));
+  EXPECT_FALSE(is_determined(result, 2));
   const std::string page = to_html(result, {"a<b"});
   std::size_t curves = 0;
   for (std::size_t at = 0; (at = page.find("<polyline", at)) != page.npos; ++at) ++curves;

@@ -251,17 +251,18 @@ TEST(PoseGraph, OnlyNodesWhosePlaceIsUnknownMove) {
   const auto slot = [&](std::size_t k) { return graph.slot_at(k); };
   graph.join_parts(slot(2), slot(12), truth[2].inverse() * truth[12], covariance(0.01, 0.01));
   const std::vector<Se3> before = poses_of(graph);
-  for (std::size_t k = 0; k < 20; ++k) EXPECT_EQ(graph.variance_of_place(slot(k)) > 1, k >= 15) << k;
+  constexpr VarianceBounds known{.position_m2 = 1, .orientation_rad2 = 1};
+  for (std::size_t k = 0; k < 20; ++k) EXPECT_EQ(graph.is_uncertain(slot(k), known), k >= 15) << k;
   // The later node's place is known: nothing moves.
-  graph.move_unknown(slot(3), slot(13), Se3(), covariance(0.01, 0.01), 1);
+  graph.move_unknown(slot(3), slot(13), Se3(), covariance(0.01, 0.01), known);
   EXPECT_EQ(poses_of(graph)[13].t, before[13].t);
   const Se3 T_a_b{Matrix3::Identity(), {1, 2, 3}};
-  graph.move_unknown(slot(17), slot(4), T_a_b.inverse(), covariance(0.01, 0.01), 1);
+  graph.move_unknown(slot(17), slot(4), T_a_b.inverse(), covariance(0.01, 0.01), known);
   const std::vector<Se3> after = poses_of(graph);
   for (std::size_t k = 0; k < 20; ++k) {
     const Se3 expected = k < 15 ? before[k] : before[4] * T_a_b * before[17].inverse() * before[k];
     EXPECT_LT(boxminus(after[k], expected).norm(), k < 15 ? 1e-300 : 1e-9) << k;
-    EXPECT_LT(graph.variance_of_place(slot(k)), 0.1) << k;
+    EXPECT_FALSE(graph.is_uncertain(slot(k), {.position_m2 = 0.1, .orientation_rad2 = 0.1})) << k;
   }
 }
 

@@ -124,5 +124,33 @@ TEST(Covariance, StaysValidAfterAReversedLeverArm) {
   EXPECT_GT(spoilt, 0) << "else this tests nothing";
 }
 
+// Compared with Eigen's determinant; neither the unit of length nor the point that it refers to decides which
+// of two is larger.
+TEST(Covariance, GeneralisedVarianceIsTheDeterminant) {
+  Random random(6);
+  for (int i = 0; i < 200; ++i) {
+    Matrix6 A;  // of millimetres and milliradians
+    for (int k = 0; k < 36; ++k) A(k) = 1e-3 * random.uniform();
+    const Matrix6 C = A * A.transpose() + 1e-8 * Matrix6::Identity();
+    const double det = C.determinant();
+    EXPECT_NEAR(generalised_variance(C), det, 1e-9 * det);
+    const Se3 lever{rotation_exp({0.3, -0.2, 0.1}), Vector3(random.uniform(), random.uniform(), 1)};
+    EXPECT_NEAR(generalised_variance(compose_covariance(Se3{}, C, lever, Matrix6::Zero())), det, 1e-6 * det);
+  }
+  EXPECT_EQ(generalised_variance(Matrix6::Zero()), 0);
+  Matrix6 singular = Matrix6::Identity();
+  singular(0, 1) = singular(1, 0) = 1;
+  EXPECT_EQ(generalised_variance(singular), std::numeric_limits<double>::infinity());
+}
+
+// A position is not compared with an orientation.
+TEST(Covariance, ExceedsBoundsOfPositionOrOrientation) {
+  Matrix6 C = Matrix6::Zero();
+  C.diagonal() << 0.1, 0.2, 0.3, 0.01, 0.02, 0.03;
+  EXPECT_FALSE(exceeds(C, {.position_m2 = 0.61, .orientation_rad2 = 0.061}));
+  EXPECT_TRUE(exceeds(C, {.position_m2 = 0.59, .orientation_rad2 = 10}));
+  EXPECT_TRUE(exceeds(C, {.position_m2 = 10, .orientation_rad2 = 0.059}));
+}
+
 }  // namespace
 }  // namespace plvo

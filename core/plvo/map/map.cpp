@@ -32,12 +32,11 @@ constexpr double kUnknownPosition_m2 = 1e4, kUnknownRotation_rad2 = 10;
 // Two views are of the same place if the camera moved by less than this share of the scene's depth, or turned
 // by less than this angle; see view_distance().
 constexpr double kSameViewMove = 0.5, kSameViewTurn_rad = 0.5;
-// A motion more uncertain than this (m² + rad²) counts as unobserved: keyframes before it are not recent, and
-// two hypotheses whose difference is more uncertain neither agree nor contradict.
-constexpr double kMostSeenVariance = 0.1;
-// A place more uncertain than this (m² + rad²) is as good as unknown: the camera was carried, or lost for
-// seconds.
-constexpr double kUnknownPlaceVariance = 1;
+// A motion more uncertain than this counts as unobserved: keyframes before it are not recent, and two
+// hypotheses whose difference is more uncertain neither agree nor contradict.
+constexpr VarianceBounds kObservedMotion{.position_m2 = 0.1, .orientation_rad2 = 0.1};
+// A place more uncertain than this is as good as unknown: the camera was carried, or lost for seconds.
+constexpr VarianceBounds kKnownPlace{.position_m2 = 1, .orientation_rad2 = 1};
 // Neighbours that are searched anew for each frame.
 constexpr int kRefreshedPerFrame = 2;
 
@@ -254,7 +253,7 @@ void Map::remove(std::uint16_t slot, MapResult& out) {
 }
 
 bool Map::place_is_known(std::uint16_t slot) const {
-  return memory_.graph.is_placed(slot) && memory_.graph.variance_of_place(slot) <= kUnknownPlaceVariance;
+  return memory_.graph.is_placed(slot) && !memory_.graph.is_uncertain(slot, kKnownPlace);
 }
 
 void Map::find_candidates(std::uint16_t slot) {
@@ -264,7 +263,7 @@ void Map::find_candidates(std::uint16_t slot) {
     const PoseGraph::Node& node = memory_.graph.node(memory_.graph.slot_at(k));
     if (node.id + kRecentKeyframes < id) break;
     memory_.excluded[memory_.graph.slot_at(k)] = 1;
-    if (node.motion_covariance.trace() > kMostSeenVariance) break;
+    if (exceeds(node.motion_covariance, kObservedMotion)) break;
   }
   const bool is_known = place_is_known(slot);
   const std::span<PlaceCandidate> room(candidates_);
@@ -299,18 +298,17 @@ bool Map::plausible(const Hypothesis& h) const {
   const PoseGraph::Node& a = memory_.graph.node(h.old_slot);
   const PoseGraph::Node& b = memory_.graph.node(h.new_slot);
   const Vector3& t = b.T_map_keyframe.t;
-  const Matrix6 covariance =
-      about_position(between(h.old_slot, h.new_slot, t) +
-                         motion_in_map(a.T_map_keyframe, h.loop.T_old_new, h.loop.covariance),
-                     t);
+  const Matrix6 covariance = about_position(
+      between(h.old_slot, h.new_slot) + motion_in_map(a.T_map_keyframe, h.loop.T_old_new, h.loop.covariance),
+      t);
   return lies_within(boxminus(a.T_map_keyframe * h.loop.T_old_new, b.T_map_keyframe), covariance);
 }
 
 // Covariance of the perturbation x_b − x_a.
-Matrix6 Map::between(std::uint16_t a, std::uint16_t b, const Vector3& t) const {
+Matrix6 Map::between(std::uint16_t a, std::uint16_t b) const {
   const Matrix6 chain = memory_.graph.chain_covariance(a, b);
   const Matrix6 both = memory_.graph.node(a).covariance + memory_.graph.node(b).covariance;
-  return about_position(chain, t).trace() < about_position(both, t).trace() ? chain : both;
+  return generalised_variance(chain) < generalised_variance(both) ? chain : both;
 }
 
 // Each of two hypotheses gives the latest part of the map a pose. They agree if these poses do.
@@ -325,7 +323,7 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   const Se3 by_b = old_b * b.loop.T_old_new;
   // The sum of the covariances of both loops, of the map between the old views and, rotated by the
   // loop, of the motion between the new views.
-  Matrix6 covariance = about_position(between(a.old_slot, b.old_slot, by_b.t) +
+  Matrix6 covariance = about_position(between(a.old_slot, b.old_slot) +
                                           motion_in_map(old_a, a.loop.T_old_new, a.loop.covariance) +
                                           motion_in_map(old_b, b.loop.T_old_new, b.loop.covariance),
                                       by_b.t);
@@ -335,7 +333,7 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   const Matrix6 of_new =
       about_position(memory_.graph.chain_covariance(a.new_slot, b.new_slot), new_b.T_map_keyframe.t);
   covariance += J.lazyProduct(of_new).eval().lazyProduct(J.transpose());
-  if (covariance.trace() > kMostSeenVariance) return Relation::kUnrelated;
+  if (exceeds(covariance, kObservedMotion)) return Relation::kUnrelated;
   return lies_within(boxminus(by_a, by_b), covariance) ? Relation::kAgree : Relation::kContradict;
 }
 
@@ -363,9 +361,8 @@ void Map::judge(MapResult& out) {
   const LoopMeasurement& loop = best->loop;
   memory_.graph.join_parts(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance);
   const Vector3& t = memory_.graph.node(best->new_slot).T_map_keyframe.t;
-  if (about_position(between(best->old_slot, best->new_slot, t), t).trace() > kUnknownPlaceVariance)
-    memory_.graph.move_unknown(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance,
-                               kUnknownPlaceVariance);
+  if (exceeds(about_position(between(best->old_slot, best->new_slot), t), kKnownPlace))
+    memory_.graph.move_unknown(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance, kKnownPlace);
   for (std::size_t i = 0; i < all.size(); ++i) {
     Hypothesis& h = all[i];
     if (!agrees[i] || h.joined) continue;

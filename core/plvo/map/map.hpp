@@ -158,7 +158,7 @@ class Map {
   bool plausible(const Hypothesis& hypothesis) const;
   enum class Relation : std::uint8_t { kAgree, kContradict, kUnrelated };
   Relation compare(const Hypothesis& a, const Hypothesis& b) const;
-  Matrix6 between(std::uint16_t a, std::uint16_t b, const Vector3& t) const;
+  Matrix6 between(std::uint16_t a, std::uint16_t b) const;
   void judge(MapResult& out);
   float view_distance(std::uint16_t a, std::uint16_t b) const;
   void find_neighbour(std::uint16_t slot);

@@ -25,9 +25,6 @@ Matrix6 transform(const Matrix6& C, const Matrix3& lever) {
   return J.lazyProduct(C).eval().lazyProduct(J.transpose());
 }
 
-// The sum of the variances of position and orientation (m², rad²) at t.
-double spread(const Matrix6& covariance, const Vector3& t) { return about_position(covariance, t).trace(); }
-
 // The measured motion from one node to another, given that in either direction.
 struct Motion {
   Se3 T;
@@ -124,9 +121,9 @@ void PoseGraph::keep_loop(const Loop& loop) {
     return;
   }
   const auto worst = std::max_element(loops_.begin(), loops_.end(), [](const Loop& l, const Loop& m) {
-    return l.covariance.trace() < m.covariance.trace();
+    return generalised_variance(l.covariance) < generalised_variance(m.covariance);
   });
-  if (worst->covariance.trace() > loop.covariance.trace()) *worst = loop;
+  if (generalised_variance(worst->covariance) > generalised_variance(loop.covariance)) *worst = loop;
 }
 
 void PoseGraph::join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance) {
@@ -142,15 +139,19 @@ void PoseGraph::join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, c
 }
 
 void PoseGraph::move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance,
-                             double unknown) {
+                             const VarianceBounds& known) {
   if (a == b) return;
   const bool in_order = nodes_[a].position < nodes_[b].position;
   const Node& older = nodes_[in_order ? a : b];
   Node& newer = nodes_[in_order ? b : a];
   std::size_t first = newer.position;
-  if (variance_of_place(order_[first]) <= unknown) return;
-  for (std::size_t k = first; k > older.position && variance_of_place(order_[k]) > unknown; --k)
-    if (at(k).motion_covariance.trace() > at(first).motion_covariance.trace()) first = k;
+  if (!is_uncertain(order_[first], known)) return;
+  double least_certain = generalised_variance(at(first).motion_covariance);
+  for (std::size_t k = first; k > older.position && is_uncertain(order_[k], known); --k)
+    if (const double variance = generalised_variance(at(k).motion_covariance); variance > least_certain) {
+      first = k;
+      least_certain = variance;
+    }
   const Motion motion = directed(in_order, T_a_b, covariance);
   place(older, newer, motion.T, motion.covariance,
         [first](const Node& node) { return node.position >= first; });
@@ -173,8 +174,8 @@ void PoseGraph::place(const Node& stays, Node& moves, const Se3& T_stays_moves, 
   relax_along_chain();
 }
 
-double PoseGraph::variance_of_place(std::uint16_t slot) const {
-  return spread(nodes_[slot].covariance, nodes_[slot].T_map_keyframe.t);
+bool PoseGraph::is_uncertain(std::uint16_t slot, const VarianceBounds& known) const {
+  return exceeds(about_position(nodes_[slot].covariance, nodes_[slot].T_map_keyframe.t), known);
 }
 
 PoseGraph::Removed PoseGraph::remove(std::uint16_t slot) {
@@ -183,8 +184,8 @@ PoseGraph::Removed PoseGraph::remove(std::uint16_t slot) {
   const std::size_t position = node.position;
   const bool has_previous = position > 0, has_next = position + 1 < size_;
   Node* const next = has_next ? &at(position + 1) : nullptr;
-  const bool into_next =
-      has_next && (!has_previous || next->motion_covariance.trace() <= node.motion_covariance.trace());
+  const bool into_next = has_next && (!has_previous || generalised_variance(next->motion_covariance) <=
+                                                           generalised_variance(node.motion_covariance));
   Removed removed;
   removed.slot = slot;
   removed.into = order_[into_next ? position + 1 : position - 1];
@@ -291,8 +292,7 @@ void PoseGraph::linearise() {
 void PoseGraph::relax(Node& node, const Node& from, const Se3& T_from_node, const Matrix6& between) const {
   if (node.position == 0) return;
   const Matrix6 covariance = from.covariance + between;
-  const Vector3& t = node.T_map_keyframe.t;
-  if (!(spread(covariance, t) < spread(node.covariance, t))) return;
+  if (!(generalised_variance(covariance) < generalised_variance(node.covariance))) return;
   const Vector6 residual = difference(from.T_map_keyframe * T_from_node * node.T_map_keyframe.inverse());
   if (mahalanobis_squared<6>(residual, between) <= kMostPlausibleMotion) node.covariance = covariance;
 }

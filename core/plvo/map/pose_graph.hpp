@@ -22,6 +22,7 @@
 #include <span>
 
 #include "plvo/base/arena.hpp"
+#include "plvo/math/covariance.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/motion/robust_kernel.hpp"
 
@@ -91,14 +92,14 @@ class PoseGraph {
   // If the nodes belong to two parts, the part that began later moves to where the motion puts it, and is
   // merged with the other.
   void join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
-  // The sum of the variances of a node's position and orientation (m² + rad²).
-  double variance_of_place(std::uint16_t slot) const;
-  // Does nothing unless the place of the later node is more uncertain than `unknown` (m² + rad²).
+  // Whether the pose of a node relative to the first one is more uncertain than a known one may be.
+  bool is_uncertain(std::uint16_t slot, const VarianceBounds& known) const;
+  // Does nothing unless the later node is uncertain.
   // Otherwise it finds the least certain motion among the uncertain nodes that end with the later
   // node. All nodes from that motion to the end of the chain move as a whole, so that the later
   // node is where T_a_b puts it. The solution would need many steps for this.
   void move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance,
-                    double unknown);
+                    const VarianceBounds& known);
   // Adds a measured motion. If there is no room, it replaces the most uncertain loop.
   void add_loop(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
   // Removes a node. Its neighbours' motions are composed; its loops go to the neighbour whose motion is more

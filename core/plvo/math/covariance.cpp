@@ -2,6 +2,7 @@
 #include "plvo/math/covariance.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/symmetric_eigen.hpp"
@@ -63,6 +64,16 @@ bool meets_the_conditions(const Matrix<N, N>& C) {
 }
 
 }  // namespace
+
+double generalised_variance(const Matrix6& C) {
+  Matrix6 L;
+  Vector6 reciprocal;
+  if (!cholesky::factor(C.data(), matrix_size<6>(), L.data(), reciprocal.data()))
+    return C.isZero(0) ? 0 : std::numeric_limits<double>::infinity();
+  double det = 1;
+  for (int i = 0; i < 6; ++i) det *= L(i, i) * L(i, i);
+  return det;
+}
 
 bool is_covariance(const Matrix3& C) { return meets_the_conditions<3>(C); }
 bool is_covariance(const Matrix6& C) { return meets_the_conditions<6>(C); }

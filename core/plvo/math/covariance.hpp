@@ -22,6 +22,23 @@ inline bool may_be_anywhere(const Matrix6& C) {
   return !(C.diagonal().head<3>().maxCoeff() <= kMostPositionVariance);
 }
 
+// Bounds on the variances of a position and of an orientation, each the sum over three directions.
+struct VarianceBounds {
+  double position_m2 = 0;
+  double orientation_rad2 = 0;
+};
+
+// Whether a variance of C, of (position, orientation), is above its bound.
+inline bool exceeds(const Matrix6& C, const VarianceBounds& bounds) {
+  return C.diagonal().head<3>().sum() > bounds.position_m2 ||
+         C.diagonal().tail<3>().sum() > bounds.orientation_rad2;
+}
+
+// The generalised variance det C (Wilks 1932): the squared volume of the ellipsoid of C, up to a factor. It
+// compares two covariances of one motion without weighing metres against radians, and it is the same about
+// every point. Zero for no uncertainty at all; infinite where C is not positive definite otherwise.
+double generalised_variance(const Matrix6& C);
+
 // Whether C is finite, without negative variances, symmetric to the tolerance, and with no eigenvalue of the
 // correlation matrix below minus the tolerance.
 bool is_covariance(const Matrix3& C);

@@ -16,8 +16,8 @@ constexpr int kLeastReadingsCompared = 50;
 // A depth camera in its slowest usual mode delivers six images a second.
 constexpr std::int64_t kOldestDepth_ns = 200'000'000;
 // A camera that stands still may see the same depth for ever, if the depth has no noise (a simulator). The
-// depth is called stopped when the camera has moved by this much since the image came (m and rad).
-constexpr double kMovedSinceDepth = 0.01;
+// depth is called stopped when the camera has moved, or turned, by this much since the image came.
+constexpr double kMovedSinceDepth_m = 0.01, kTurnedSinceDepth_rad = 0.01;
 
 // FNV-1a over whole pixels. Grids that differ in one pixel never have the same hash.
 class GridHash {
@@ -89,7 +89,9 @@ void DepthStream::look(const RgbdFrame& frame, GrayView mask) {
 }
 
 bool DepthStream::is_too_old_for(const Se3& T_current_first) const {
-  return age_ns_ > kOldestDepth_ns && boxminus(T_current_first, Se3{}).norm() > kMovedSinceDepth;
+  const Vector6 moved = boxminus(T_current_first, Se3{});
+  return age_ns_ > kOldestDepth_ns &&
+         (moved.head<3>().norm() > kMovedSinceDepth_m || moved.tail<3>().norm() > kTurnedSinceDepth_rad);
 }
 
 Status DepthStream::explain_stop(const char* first_word) const {

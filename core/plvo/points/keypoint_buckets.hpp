@@ -16,21 +16,8 @@ namespace plvo {
 // Keypoint indices by bucket (counting sort; within a bucket, in the order of the keypoints).
 class KeypointBuckets {
  public:
-  KeypointBuckets(const FixedVector<Keypoint>& keypoints, int width, int height, Arena& scratch)
-      : columns_(along(width)), rows_(along(height)) {
-    order_ = scratch.take<std::uint16_t>("buckets", keypoints.size());
-    starts_ = scratch.take<std::uint16_t>("buckets", count(width, height) + 1);
-    if (starts_.empty() || order_.size() < keypoints.size()) return;
-    std::fill(starts_.begin(), starts_.end(), std::uint16_t{0});
-    for (const Keypoint& k : keypoints) ++starts_[bucket(k) + 1];
-    for (std::size_t i = 1; i < starts_.size(); ++i)
-      starts_[i] = static_cast<std::uint16_t>(starts_[i] + starts_[i - 1]);
-    // Fills from the back, which moves every start to its final value.
-    for (std::size_t i = keypoints.size(); i-- > 0;)
-      order_[--starts_[bucket(keypoints[i]) + 1]] = static_cast<std::uint16_t>(i);
-    for (std::size_t b = 0; b + 1 < starts_.size(); ++b) starts_[b] = starts_[b + 1];
-    starts_[starts_.size() - 1] = static_cast<std::uint16_t>(keypoints.size());
-  }
+  // Without enough scratch there are no buckets, and nothing is visited.
+  KeypointBuckets(const FixedVector<Keypoint>& keypoints, int width, int height, Arena& scratch);
 
   // Calls visit(index) for every keypoint in the buckets that the square of ±radius around (u, v) touches.
   template <typename Visit>
@@ -59,13 +46,9 @@ class KeypointBuckets {
   static constexpr std::size_t count(int width, int height) {
     return static_cast<std::size_t>(along(width)) * static_cast<std::size_t>(along(height));
   }
-  std::size_t bucket(const Keypoint& k) const {
-    const int x = std::clamp(static_cast<int>(k.u) / kSide_px, 0, columns_ - 1);
-    const int y = std::clamp(static_cast<int>(k.v) / kSide_px, 0, rows_ - 1);
-    return static_cast<std::size_t>(y * columns_ + x);
-  }
+  std::size_t bucket(const Keypoint& k) const;
 
-  int columns_, rows_;
+  int columns_ = 0, rows_ = 0;
   std::span<std::uint16_t> order_;
   std::span<std::uint16_t> starts_;
 };

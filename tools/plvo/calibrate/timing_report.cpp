@@ -19,7 +19,7 @@ std::string found_text(const TimingResult& result, std::size_t i) {
   const double value_ms = kMs * value_of(result.timing, i);
   if (i == 2 && result.global_shutter) return "0: a global shutter agrees best";
   if (result.sigma_s[i] == 0) return fmt::format("{:.1f} ms, as given", value_ms);
-  if (!is_told(result, i)) return "not shown by these recordings; left as it was";
+  if (!is_determined(result, i)) return "not shown by these recordings; left as it was";
   return fmt::format("{:.2f} ms, SD {:.2f} ms", value_ms, kMs * result.sigma_s[i]);
 }
 
@@ -108,7 +108,7 @@ double value_of(const SensorTiming& t, std::size_t index) {
   return std::array{t.depth_delay_s, t.depth_readout_s, t.readout_s}[index];
 }
 
-bool is_told(const TimingResult& result, std::size_t index) {
+bool is_determined(const TimingResult& result, std::size_t index) {
   return result.sigma_s[index] <= kMostSigma_s[index];
 }
 
@@ -128,7 +128,8 @@ nlohmann::ordered_json to_json(const TimingResult& result) {
                                  {"global_shutter", result.global_shutter},
                                  {"turn_deg_per_s", kDegrees * result.turn_rad_per_s}};
   for (std::size_t i = 0; i < 3; ++i) {
-    nlohmann::ordered_json entry = {{"value", value_of(result.timing, i)}, {"told", is_told(result, i)}};
+    nlohmann::ordered_json entry = {{"value", value_of(result.timing, i)},
+                                    {"determined", is_determined(result, i)}};
     entry["sigma"] = std::isfinite(result.sigma_s[i]) ? nlohmann::ordered_json(result.sigma_s[i]) : nullptr;
     entry["curve"] = nlohmann::ordered_json::array();
     for (const CurvePoint& p : result.curves[i]) entry["curve"].push_back({p.seconds, p.disagreement});

@@ -21,7 +21,7 @@ double value_of(const SensorTiming& timing, std::size_t index);
 
 // Standard deviations (s) above which the recordings do not determine the unknown.
 inline constexpr std::array<double, 3> kMostSigma_s = {0.003, 0.008, 0.008};
-bool is_told(const TimingResult& result, std::size_t index);
+bool is_determined(const TimingResult& result, std::size_t index);
 
 std::string to_text(const TimingResult& result);
 nlohmann::ordered_json to_json(const TimingResult& result);

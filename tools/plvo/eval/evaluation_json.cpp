@@ -94,7 +94,7 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
   json["by_distance"] = Json::array();
   for (const DistanceError& d : e.by_distance) {
     json["by_distance"].push_back({{"length_m", d.length_m},
-                                   {"pieces", d.translation_percent.count},
+                                   {"sub_trajectories", d.translation_percent.count},
                                    {"translation_percent", to_json(d.translation_percent)},
                                    {"rotation_deg_per_m", to_json(d.rotation_deg_per_m)}});
   }

@@ -122,9 +122,9 @@ std::string to_text(const Evaluation& e) {
   for (const RpeResult& r : e.rpe) add_rpe(text, r);
   add_ate(text, e);
   if (!e.by_distance.empty()) {
-    text.line("\nerror against distance: mean (p95) drift over pieces of the path");
+    text.line("\nerror against distance: mean (p95) drift over sub-trajectories");
     for (const DistanceError& d : e.by_distance) {
-      text.line("  {:7.1f} m {:8.3f} % ({:.3f}) {:9.4f} deg/m ({:.4f})  {} pieces", d.length_m,
+      text.line("  {:7.1f} m {:8.3f} % ({:.3f}) {:9.4f} deg/m ({:.4f})  {} sub-trajectories", d.length_m,
                 d.translation_percent.mean, d.translation_percent.p95, d.rotation_deg_per_m.mean,
                 d.rotation_deg_per_m.p95, d.translation_percent.count);
     }

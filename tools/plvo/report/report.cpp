@@ -141,7 +141,8 @@ class Writer {
                       fmt::format("{:.3f}", d.rotation_deg_per_m.mean),
                       fmt::format("{}", d.translation_percent.count)});
     }
-    json["by_distance"] = {{"head", {"path", "mean, %", "p95, %", "mean, °/m", "pieces"}}, {"rows", rows}};
+    json["by_distance"] = {{"head", {"path", "mean, %", "p95, %", "mean, °/m", "sub-trajectories"}},
+                           {"rows", rows}};
   }
 
   Json errors(const eval::Evaluation& e) const {

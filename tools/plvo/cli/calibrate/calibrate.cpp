@@ -203,15 +203,15 @@ class Calibrate {
 
   int finish() {
     catch_interrupt();  // until here there is nothing to keep: a signal ends the program at once
-    if (!calibrate::is_told(result_, 0))
+    if (!calibrate::is_determined(result_, 0))
       return fail(
           "these recordings do not show when depth is exposed; record half a minute in a furnished room with "
           "light, "
           "turning the camera all the while: left and right, up and down, 20 to 60 deg/s");
     calibrate::SensorTiming timing = result_.timing;
     const calibrate::SensorTiming start = calibrate::timing_of(calibration_.camera);
-    if (!calibrate::is_told(result_, 1)) timing.depth_readout_s = start.depth_readout_s;
-    if (!calibrate::is_told(result_, 2)) timing.readout_s = start.readout_s;
+    if (!calibrate::is_determined(result_, 1)) timing.depth_readout_s = start.depth_readout_s;
+    if (!calibrate::is_determined(result_, 2)) timing.readout_s = start.readout_s;
     result_.timing = timing;
     if (!result_.settled)
       console_.write(LogLevel::kWarning, "the last pass still changed the result; more frames help");
@@ -239,7 +239,7 @@ class Calibrate {
   Status write_calibration() {
     std::string text = "# Made by plvo calibrate from" + names() + '\n';
     for (std::size_t i = 0; i < 3; ++i)
-      if (calibrate::is_told(result_, i) && result_.sigma_s[i] > 0)
+      if (calibrate::is_determined(result_, i) && result_.sigma_s[i] > 0)
         text += fmt::format("# {}: SD {:.5f} s\n", calibrate::kTimingNames[i].key, result_.sigma_s[i]);
     // Numbers of a thousandth of a millisecond say all there is to say.
     DepthTiming& depth = calibration_.camera.depth_timing;

@@ -53,8 +53,8 @@ function metricsSection(m) {
     ["RMSE", "mm", "zero motion", "\u00b0", "zero motion"], rows,
     `${m.poses} of ${m.estimate_poses} poses, ${m.duration_s.toFixed(2)} s, ${m.path_m.toFixed(2)} m. ` +
     `\u201cZero motion\u201d is the error of an estimate without any motion. ${nees}`);
-  const pieces = data.by_distance;
-  if (pieces && pieces.rows.length) section.append(table("by-distance", "Error against distance", pieces.head, pieces.rows));
+  const distances = data.by_distance;
+  if (distances && distances.rows.length) section.append(table("by-distance", "Error against distance", distances.head, distances.rows));
   return section;
 }
 
