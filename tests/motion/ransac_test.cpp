@@ -34,13 +34,13 @@ Lead lead_of_proven(std::size_t proven) {
 
 // A quarter as many new landmarks could outvote the proven ones where these disagree; fewer could not.
 TEST(Ransac, ProvenLandmarksLeadWhereNewOnesCouldOutvoteThem) {
-  for (const std::size_t proven : {10, 50, 80}) {
+  for (const std::size_t proven : {10U, 50U, 80U}) {
     const Lead lead = lead_of_proven(proven);
     EXPECT_TRUE(lead.is_taken) << proven;
     EXPECT_EQ(lead.matches, proven);
   }
   // Too few to determine a motion, or hardly any new ones.
-  for (const std::size_t proven : {0, 9, 81, 100}) {
+  for (const std::size_t proven : {0U, 9U, 81U, 100U}) {
     const Lead lead = lead_of_proven(proven);
     EXPECT_FALSE(lead.is_taken) << proven;
     EXPECT_EQ(lead.matches, 100U);

@@ -61,7 +61,7 @@ TEST(KeypointBuckets, NothingIsVisitedWithoutScratch) {
   std::vector<Keypoint> storage(1);
   FixedVector<Keypoint> keypoints(storage);
   ASSERT_TRUE(keypoints.push_back(Keypoint()));
-  for (const std::size_t bytes : {0, 1, 64}) {
+  for (const std::size_t bytes : {0U, 1U, 64U}) {
     std::vector<std::byte> memory(bytes + kArenaAlignment);
     Arena scratch(std::span<std::byte>(memory).first(bytes));
     const KeypointBuckets buckets(keypoints, 333, 250, scratch);
