@@ -262,7 +262,7 @@ TEST(PoseGraph, OnlyNodesWhosePlaceIsUnknownMove) {
   for (std::size_t k = 0; k < 20; ++k) {
     const Se3 expected = k < 15 ? before[k] : before[4] * T_a_b * before[17].inverse() * before[k];
     EXPECT_LT(boxminus(after[k], expected).norm(), k < 15 ? 1e-300 : 1e-9) << k;
-    EXPECT_FALSE(graph.is_uncertain(slot(k), {.position_m2 = 0.1, .orientation_rad2 = 0.1})) << k;
+    EXPECT_FALSE(graph.is_uncertain(slot(k), {.position_m2 = 0.05, .orientation_rad2 = 0.05})) << k;
   }
 }
 

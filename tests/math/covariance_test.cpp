@@ -124,8 +124,7 @@ TEST(Covariance, StaysValidAfterAReversedLeverArm) {
   EXPECT_GT(spoilt, 0) << "else this tests nothing";
 }
 
-// Compared with Eigen's determinant; neither the unit of length nor the point that it refers to decides which
-// of two is larger.
+// Compared with Eigen's determinant, also after the covariance was moved to another point.
 TEST(Covariance, GeneralisedVarianceIsTheDeterminant) {
   Random random(6);
   for (int i = 0; i < 200; ++i) {
@@ -150,6 +149,8 @@ TEST(Covariance, ExceedsBoundsOfPositionOrOrientation) {
   EXPECT_FALSE(exceeds(C, {.position_m2 = 0.61, .orientation_rad2 = 0.061}));
   EXPECT_TRUE(exceeds(C, {.position_m2 = 0.59, .orientation_rad2 = 10}));
   EXPECT_TRUE(exceeds(C, {.position_m2 = 10, .orientation_rad2 = 0.059}));
+  C(2, 2) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(exceeds(C, {.position_m2 = 10, .orientation_rad2 = 10}));
 }
 
 }  // namespace

@@ -10,11 +10,12 @@
 namespace plvo {
 namespace {
 
-// Sets the records of the first `proven` of 100 points. Returns whether they lead, and their number.
 struct Lead {
-  bool is_taken;
-  std::size_t matches;
+  bool is_taken;        // by the proven landmarks
+  std::size_t matches;  // that lead
 };
+
+// The first `proven` of 100 points have agreed before.
 Lead lead_of_proven(std::size_t proven) {
   test::Gaussian gaussian(34);
   test::SimulatedPair pair = test::simulate(gaussian, 100, 0);

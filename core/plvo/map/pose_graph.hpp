@@ -94,10 +94,9 @@ class PoseGraph {
   void join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
   // Whether the pose of a node relative to the first one is more uncertain than a known one may be.
   bool is_uncertain(std::uint16_t slot, const VarianceBounds& known) const;
-  // Does nothing unless the later node is uncertain.
-  // Otherwise it finds the least certain motion among the uncertain nodes that end with the later
-  // node. All nodes from that motion to the end of the chain move as a whole, so that the later
-  // node is where T_a_b puts it. The solution would need many steps for this.
+  // Does nothing unless the later node is uncertain. Otherwise it finds the least certain motion among the
+  // uncertain nodes that end with the later node. All nodes from that motion to the end of the chain move as
+  // a whole, so that the later node is where T_a_b puts it. The solution would need many steps for this.
   void move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance,
                     const VarianceBounds& known);
   // Adds a measured motion. If there is no room, it replaces the most uncertain loop.

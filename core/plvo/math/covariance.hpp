@@ -28,10 +28,10 @@ struct VarianceBounds {
   double orientation_rad2 = 0;
 };
 
-// Whether a variance of C, of (position, orientation), is above its bound.
+// Whether a variance of C, of (position, orientation), is above its bound, or is not a number.
 inline bool exceeds(const Matrix6& C, const VarianceBounds& bounds) {
-  return C.diagonal().head<3>().sum() > bounds.position_m2 ||
-         C.diagonal().tail<3>().sum() > bounds.orientation_rad2;
+  return !(C.diagonal().head<3>().sum() <= bounds.position_m2 &&
+           C.diagonal().tail<3>().sum() <= bounds.orientation_rad2);
 }
 
 // The generalised variance det C (Wilks 1932): the squared volume of the ellipsoid of C, up to a factor. It
