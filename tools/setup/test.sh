@@ -35,7 +35,8 @@ build() {
 # the tests in tests/allowed_skips.txt may be skipped.
 suite() {
   say "[$((SECONDS - started)) s] $1: testing"
-  ctest --preset "$1" --parallel "$(nproc)" --no-tests=error --output-junit ran.xml "${@:3}"
+  # Some tests build projects of a user's, with his compiler and without flags.
+  env --unset=CXXFLAGS ctest --preset "$1" --parallel "$(nproc)" --no-tests=error --output-junit ran.xml "${@:3}"
   # shellcheck disable=SC2086  # a list of words
   python3 tests/architecture/ran.py "build/$1/ran.xml" "$1" $2
 }
