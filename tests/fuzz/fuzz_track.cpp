@@ -82,12 +82,8 @@ Config read_config(Bytes& bytes) {
   config.level_world = bytes.one_in(2);
   ReferenceConfig& references = config.references;
   references.policy = static_cast<ReferencePolicy>((bytes.below(4) + 2) % 4);
-  references.recent_frames = 1 + bytes.below(4);
   references.max_lost_s = 0.03 * bytes.below(4);
-  references.relocalisation_interval_frames = 1 + bytes.below(4);
   tune(references.keyframe_inlier_ratio, 0, 1);
-  tune(references.window_inlier_ratio, 0, 1);
-  tune(references.older_inlier_ratio, 0, 1);
   tune(references.process_noise_m_per_s, 0, 100);
   tune(references.process_noise_rad_per_s, 0, 100);
   config.points.registered = !bytes.one_in(4);

@@ -122,7 +122,7 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view)) {
   lost.references.max_lost_s = 0.06;
   // A new keyframe every few frames, though the camera is slow.
   window.references.policy = ReferencePolicy::kWindow;
-  window.references.window_inlier_ratio = 0.8;
+  window.references.keyframe_inlier_ratio = 0.8;
   three.references = 3;
   const GoldenCase cases[] = {
       {.name = "default", .config = {}, .frames = 20, .dark_from = 8},

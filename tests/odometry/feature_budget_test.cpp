@@ -113,7 +113,7 @@ class BudgetedOdometry : public ::testing::Test {
 
 TEST_F(BudgetedOdometry, KeepsAsManyFeaturesAsTheStepSays) {
   Config config = budgeted();
-  config.references.recent_frames = 1;  // points are detected in every frame
+  config.references.policy = ReferencePolicy::kPreviousFrame;  // points are detected in every frame
   init(config);
   const std::vector<int> steps = {0, 1, 1, 1, 2, 2, 2, 3};
   FeatureBudget expected;

@@ -184,7 +184,6 @@ TEST(SoundResults, SurviveALongSequenceOfRandomEvents) {
     Config config;
     config.references.policy = static_cast<ReferencePolicy>(run);
     config.level_world = run % 2 == 1;
-    config.references.relocalisation_interval_frames = 2;
     SmallCamera camera(config, limits);
     Random random(static_cast<std::uint64_t>(run) + 1);
     const auto any = [&](double low, double high) {

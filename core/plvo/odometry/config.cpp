@@ -113,13 +113,9 @@ void check(RangeCheck& ranges, const MotionConfig& motion) {
 void check(RangeCheck& ranges, const ReferenceConfig& references) {
   ranges.group("references.");
   ranges.require("keyframe_inlier_ratio", references.keyframe_inlier_ratio, 0, 1);
-  ranges.require("window_inlier_ratio", references.window_inlier_ratio, 0, 1);
-  ranges.require("older_inlier_ratio", references.older_inlier_ratio, 0, 1);
   ranges.require("max_lost_s", references.max_lost_s, 0, 1000000);
   ranges.require("process_noise_m_per_s", references.process_noise_m_per_s, 0, 100);
   ranges.require("process_noise_rad_per_s", references.process_noise_rad_per_s, 0, 100);
-  ranges.require("recent_frames", references.recent_frames, 1, 1000000);
-  ranges.require("relocalisation_interval_frames", references.relocalisation_interval_frames, 1, 1000000);
 }
 
 void check(RangeCheck& ranges, const BudgetConfig& budget) {

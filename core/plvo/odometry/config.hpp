@@ -76,7 +76,7 @@ enum class ReferencePolicy : std::uint8_t {
   kPreviousFrame,  // the paper: matches every frame with the one before
   kKeyframe,       // matches with the last keyframe, which is replaced when too few of its features are still
                    // seen
-  // Matches with the keyframe and a recent frame (ReferenceConfig::recent_frames) in one estimate. The
+  // Matches with the keyframe and a recent frame (Window::kRecentFrames) in one estimate. The
   // keyframe keeps the drift small; the recent frame shares most features with the current one.
   kKeyframeAndPrevious,
   // Matches with these and the previous keyframe. The drift is smaller where the camera moves on, but not
@@ -124,16 +124,8 @@ struct NoiseConfig {
 
 struct ReferenceConfig {
   ReferencePolicy policy = ReferencePolicy::kKeyframeAndPrevious;
-  // The recent frame is matched for at most this many frames, while half of its features are inliers; 1: it
-  // is always the last one. Points are searched only in frames that will be matched, and where registration
-  // fails.
-  int recent_frames = 3;
   // A keyframe is kept while at least this share of its features are inliers.
   double keyframe_inlier_ratio = 0.3;
-  // kWindow: a keyframe is replaced when the share of its features that are inliers falls below the first
-  // number. It is still matched as the older keyframe down to the second one.
-  double window_inlier_ratio = 0.35;
-  double older_inlier_ratio = 0.2;
   // When every frame has been lost for this long, the odometry gives up the references and starts anew from
   // the last good pose. The covariance of that pose then grows by the process noise below (SD per second),
   // and by the motion of a camera that kept its velocity. Where Limits have memory for a kept keyframe, a
@@ -141,9 +133,6 @@ struct ReferenceConfig {
   double max_lost_s = 0.5;
   double process_noise_m_per_s = 0.5;
   double process_noise_rad_per_s = 0.5;
-  // Once tracking resumes, the odometry checks every so many frames whether the view of a kept keyframe is
-  // back.
-  int relocalisation_interval_frames = 5;
 };
 
 // Time budget of a frame in real-time use (features/feature_budget.hpp). The caller measures the time.

@@ -27,7 +27,7 @@ struct SegmentView {
 // Pixels are those of the undistorted image. Valid until the next call of track().
 struct FeatureView {
   GrayView image;                       // undistorted, grey
-  std::span<const Keypoint> keypoints;  // empty if none were searched (recent_frames)
+  std::span<const Keypoint> keypoints;  // empty if none were searched (Window::kRecentFrames)
   std::span<const SegmentView> segments, reference_segments;
   std::span<const PointTrackView> point_tracks;
   std::span<const LineTrackView> line_tracks;

@@ -241,10 +241,10 @@ PropagatedPrior Odometry::propagate(std::int64_t stamp_ns, const MotionPrior& pr
 // frame will be matched later.
 bool Odometry::wants_points() const {
   if (!window_.has_keyframe() || !config_->points.registered) return true;
-  const ReferenceConfig& references = config_->references;
-  if (relocalisation_.is_due(window_.kept(), references)) return true;
-  if (references.policy == ReferencePolicy::kPreviousFrame) return true;
-  return references_of(references.policy) > 1 && !window_.recent_is_young(references.recent_frames);
+  if (relocalisation_.is_due(window_.kept())) return true;
+  const ReferencePolicy policy = config_->references.policy;
+  if (policy == ReferencePolicy::kPreviousFrame) return true;
+  return references_of(policy) > 1 && !window_.recent_is_young();
 }
 
 void Odometry::reset() {

@@ -11,6 +11,9 @@ namespace {
 constexpr int kMinStartFeatures = 20;
 // A recent frame is matched while at least this share of its features are inliers.
 constexpr double kRecentInlierRatio = 0.5;
+// The same for the older keyframe of kWindow. It shows another part of the scene than the keyframe, so fewer
+// of its features are in view.
+constexpr double kOlderInlierRatio = 0.2;
 
 Status hardly_anything(StatusCode code, const char* first_word, const FrameFeatures& features) {
   return Status(code, first_word)
@@ -82,7 +85,6 @@ void decide_start(const Window& window, const GravityFilter& gravity, const Curr
 Window::Kept still_good(const Window& window, const ReferenceTracking& tracking, const Config& config,
                         const FeatureCapacity& capacity, const MotionBase& base) {
   const ReferenceConfig& references = config.references;
-  const bool is_window = references.policy == ReferencePolicy::kWindow;
   const bool all = base.kind == MotionBase::Kind::kReferences;
   const bool both = all && window.has_recent();
   const auto good = [&](int slot, std::size_t index, double share) {
@@ -92,13 +94,11 @@ Window::Kept still_good(const Window& window, const ReferenceTracking& tracking,
            still_seen(features, tracking.tracks(index), share);
   };
   Window::Kept kept;
-  kept.older = all && window.has_older() && good(window.older(), both ? 2 : 1, references.older_inlier_ratio);
-  kept.keyframe =
-      references.policy != ReferencePolicy::kPreviousFrame &&
-      good(base.slot, 0, is_window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
+  kept.older = all && window.has_older() && good(window.older(), both ? 2 : 1, kOlderInlierRatio);
+  kept.keyframe = references.policy != ReferencePolicy::kPreviousFrame &&
+                  good(base.slot, 0, references.keyframe_inlier_ratio);
   if (both)
-    kept.recent =
-        window.recent_is_young(references.recent_frames) && good(window.recent(), 1, kRecentInlierRatio);
+    kept.recent = window.recent_is_young() && good(window.recent(), 1, kRecentInlierRatio);
   else  // Without registration find() is the whole estimate, with the base alone.
     kept.recent = !config.points.registered || references_of(references.policy) == 1;
   kept.recent = kept.recent && kept.keyframe;

@@ -198,7 +198,7 @@ void Odometry::note_pose(TrackResult& result) {
 // not needed any more; it is overwritten.
 [[gnu::noinline]] void Odometry::relocalise(const CurrentFrame& frame, TrackedMotion& tracked,
                                             TrackResult& result) {
-  if (!relocalisation_.take(window_.kept(), config_->references)) return;
+  if (!relocalisation_.take(window_.kept())) return;
   const int slot = window_.next_kept();
   const Window::Frame& last = window_.last_frame();  // the frame just tracked
   if (!recognise(window_[slot], frame, last.velocity.value, last.pose, memory_.tracking, tracked)) return;

@@ -19,22 +19,23 @@ bool still_seen(const FrameFeatures& reference, const ReferenceTracks& tracks, d
 bool recognise(const Window::Frame& keyframe, const CurrentFrame& frame, const Vector6& velocity,
                const PoseWithCovariance& believed, ReferenceTracking& tracking, TrackedMotion& tracked);
 
-// Decides in which frames the view of a kept keyframe is searched while tracking goes on: one in
-// every ReferenceConfig::relocalisation_interval_frames.
+// Decides in which frames the view of a kept keyframe is searched while tracking goes on.
 class RelocalisationTurn {
  public:
-  bool is_due(const KeptKeyframes& kept, const ReferenceConfig& config) const {
-    return !kept.empty() && frames_since_ + 1 >= config.relocalisation_interval_frames;
-  }
+  bool is_due(const KeptKeyframes& kept) const { return !kept.empty() && frames_since_ + 1 >= kInterval; }
   // Counts a frame; returns whether it is its turn.
-  bool take(const KeptKeyframes& kept, const ReferenceConfig& config) {
-    const bool due = is_due(kept, config);
+  bool take(const KeptKeyframes& kept) {
+    const bool due = is_due(kept);
     if (!kept.empty()) frames_since_ = due ? 0 : frames_since_ + 1;
     return due;
   }
   void forget() { frames_since_ = 0; }
 
  private:
+  // Frames from one search to the next. A search matches descriptors over the whole image, which takes too
+  // long for every frame.
+  static constexpr int kInterval = 5;
+
   int frames_since_ = 0;
 };
 

@@ -4,7 +4,7 @@
 namespace plvo {
 
 // Counts of the points, or of the lines, of a frame. If no points were searched in it
-// (ReferenceConfig::recent_frames), the first three of the points are those of the latest frame in which they
+// (Window::kRecentFrames), the first three of the points are those of the latest frame in which they
 // were.
 struct FeatureCounts {
   int detected = 0;    // found, before the selection

@@ -91,8 +91,11 @@ class Window {
     std::span<const int> span() const { return std::span(slots).first(count); }
   };
   References references() const;
+  // The recent frame is matched for at most this many frames. Points are searched only in frames that will be
+  // matched, and where registration fails.
+  static constexpr int kRecentFrames = 3;
   // Whether there is a recent frame that may be matched once more.
-  bool recent_is_young(int recent_frames) const { return has_recent() && recent_age_ + 1 < recent_frames; }
+  bool recent_is_young() const { return has_recent() && recent_age_ + 1 < kRecentFrames; }
 
   Frame& operator[](int slot) { return frames_[static_cast<std::size_t>(slot)]; }
   const Frame& operator[](int slot) const { return frames_[static_cast<std::size_t>(slot)]; }
