@@ -69,6 +69,16 @@ TEST(HardSequences, FramesWithFrozenDepthAreLost) {
   EXPECT_LT(frozen.nees, kNeesBound);
 }
 
+// The motion is a compromise between the room and dots that the camera carries along. The covariance contains
+// its error, because points and lines disagree.
+TEST(HardSequences, TheCovarianceContainsACompromiseWithDots) {
+  SimulatorOptions options = hard_options(60, {"dots"});
+  options.scene = SceneName::kDesk;
+  const HardSequence dots = track_hard(options);
+  EXPECT_EQ(dots.tracked, 59);
+  EXPECT_LE(dots.false_poses, 6);
+}
+
 void expect_rest_before_a_board(SceneName scene, std::uint64_t seed, double most_m) {
   SimulatorOptions options = hard_options(60, {"board"});
   options.scene = scene;

@@ -43,8 +43,9 @@ struct MotionEstimate {
   // Information matrices of the first kInformedTerms terms, in their order: C_P⁻¹ (14), C_L⁻¹ (19). If there
   // are no other terms and C_H contains no other motion, their sum is C_H⁻¹ (26). Zero for an empty term.
   std::array<Matrix6, kInformedTerms> information = zero_matrices<kInformedTerms>();
-  ReferenceInformation references;       // information of all terms, given the nuisance parameters
-  NuisanceEstimate shared;               // zero unless kOk
+  ReferenceInformation references;  // information of all terms, given the nuisance parameters
+  double disagreement = 0;          // of points, lines, surfaces and priors (MotionProblem::disagreement)
+  NuisanceEstimate shared;          // zero unless kOk
   std::array<int, kMaxTerms> inliers{};  // the flags are in each term's inliers()
   RansacSummary ransac;
   LmSummary lm;

@@ -107,6 +107,15 @@ class MotionProblem {
   // The Schur complement of one term at the accepted state, given the nuisance parameters: C_P⁻¹ (14), C_L⁻¹
   // (19). term < kInformedTerms.
   const Matrix6& information(std::size_t term) const { return information_[term]; }
+  // By how much the terms contradict each other at the accepted state: Cochran's Q (Cochran 1954) of the
+  // terms of a reference, for the reference where it is largest. With the information H and the gradient g of
+  // each term about the motion, given the nuisance parameters,
+  //
+  //   Q = Σ gᵀ H⁻¹ g − (Σ g)ᵀ (Σ H)⁻¹ (Σ g):
+  //
+  // the squared Mahalanobis distances between the optimum of each term and that of all. If the covariances
+  // are true, it is χ² with six degrees of freedom for every term but one.
+  double disagreement() const { return disagreement_; }
   // The information of all terms at the accepted state, given the nuisance parameters.
   const ReferenceInformation& references() const { return of_references_; }
 
@@ -138,6 +147,7 @@ class MotionProblem {
   SharedGain gain_, candidate_gain_;
   std::array<Matrix6, kInformedTerms> information_, candidate_information_;
   ReferenceInformation of_references_, candidate_of_references_;
+  double disagreement_ = 0, candidate_disagreement_ = 0;
   // Sums of a linearisation: over all references, over one reference, over one term of it.
   JointInformation sum_, of_reference_, of_term_;
 };

@@ -71,6 +71,7 @@ Odometry::Odometry() = default;
   config_ = config;
   memory_.extraction.init(camera_, config_->mask);
   noise_ = config.noise.initial;
+  disagreement_ = {};
   budget_.init(config.budget, limits);
   window_.init(features, limits.kept_keyframes);
   carried_.init(camera_.width, camera_.height);
@@ -255,6 +256,7 @@ void Odometry::reset() {
   window_.reset();
   view_slot_ = window_.current();
   noise_ = config_->noise.initial;
+  disagreement_ = {};
   last_stamp_ns_.reset();
   colour_.forget();
   depth_.forget();

@@ -25,6 +25,7 @@
 #include "plvo/motion/motion_prior.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/decision.hpp"
+#include "plvo/odometry/disagreement.hpp"
 #include "plvo/odometry/feature_views.hpp"
 #include "plvo/odometry/features/feature_budget.hpp"
 #include "plvo/odometry/features/feature_extraction.hpp"
@@ -164,6 +165,7 @@ class Odometry {
   PropagatedPrior propagated_prior_;  // since the last good frame
   GravityFilter gravity_;
   NoiseScales noise_;                          // learnt so far
+  Disagreement disagreement_;                  // of late
   std::optional<std::int64_t> last_stamp_ns_;  // of the last frame that was processed, good or not
   std::optional<std::int64_t> lost_since_ns_;  // stamp of the first lost frame since a pose from images
   bool start_is_set_ = false;                  // by set_pose()

@@ -44,8 +44,8 @@ struct TrackResult {
   std::uint32_t world = 0;
 
   // Motion with respect to the reference, X_camera = T_camera_reference X_reference. Its covariance is the
-  // sum of C_H (23), the common-mode error of the matches with a keyframe (common_mode_error.hpp), and the
-  // errors of both stamps.
+  // sum of C_H (23) and the common-mode error of the matches with a keyframe (common_mode_error.hpp), times
+  // the factor of disagreement.hpp, plus the errors of both stamps.
   Se3 T_camera_reference;
   Matrix6 motion_covariance = Matrix6::Zero();
 
