@@ -45,7 +45,8 @@ double share_of(const CostTerm& term) {
 
 // gᵀ H⁻¹ g. Directions without information have no gradient; the ridge keeps H positive definite there. Zero
 // if there is no information at all.
-double squared_step(const JointInformation& sum) {
+// Not inlined: its matrices would otherwise be on the stack while a term is linearised.
+[[gnu::noinline]] double squared_step(const JointInformation& sum) {
   constexpr double kRidge = 1e-6;
   Matrix6 H = sum.H.block<6, 6>(0, 0);
   H.diagonal() *= 1 + kRidge;
