@@ -26,8 +26,8 @@ SimulatorOptions hard_options(int frames, std::initializer_list<const char*> nam
   return options;
 }
 
-HardSequence track_hard(const SimulatorOptions& options) {
-  const test::TrackedSequence tracked = test::track_sequence(options, test::kTestLimits, Config{});
+HardSequence track_hard(const SimulatorOptions& options, const Limits& limits = test::kTestLimits) {
+  const test::TrackedSequence tracked = test::track_sequence(options, limits, Config{});
   HardSequence figures;
   for (std::size_t i = 0; i < tracked.results.size(); ++i) {
     const TrackResult& result = tracked.results[i];
@@ -77,6 +77,16 @@ TEST(HardSequences, TheCovarianceContainsACompromiseWithDots) {
   const HardSequence dots = track_hard(options);
   EXPECT_EQ(dots.tracked, 59);
   EXPECT_LE(dots.false_poses, 6);
+}
+
+// What is seen in a mirror lies behind its depth. The motion is a compromise between the room and the mirror.
+// The covariance contains its error, because it contains what points, lines and surfaces say apart.
+TEST(HardSequences, TheCovarianceContainsACompromiseWithAMirror) {
+  Limits limits = test::kTestLimits;
+  limits.surfaces = 200;
+  const HardSequence mirror = track_hard(hard_options(60, {"mirror"}), limits);
+  EXPECT_EQ(mirror.tracked, 59);
+  EXPECT_LE(mirror.false_poses, 6);
 }
 
 void expect_rest_before_a_board(SceneName scene, std::uint64_t seed, double most_m) {

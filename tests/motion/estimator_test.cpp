@@ -409,6 +409,7 @@ class PlaneSamples final : public CostTerm {
     double sigma;
   };
   explicit PlaneSamples(std::span<const Sample> samples) : CostTerm({}), samples_(samples) {}
+  LandmarkKind kind() const override { return LandmarkKind::kSurfaces; }
   int dof() const override { return 1; }
   void begin(const Se3&, const NuisanceParameters&, const RobustKernel&, std::size_t) override {}
   double linearize(const Se3& T, const NuisanceParameters&, const RobustKernel& kernel,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cochran's Q of points and lines, compared with its definition: the distance between the motion that points
-// alone show and the one that lines alone show.
+// How far points and lines disagree, compared with the definitions: Cochran's Q with the distance between the
+// motion that points alone show and the one that lines alone show, and the shift of a kind with a solution in
+// which this kind weighs more.
 #include <gtest/gtest.h>
 
 #include "simulated_pair.hpp"
@@ -43,6 +44,21 @@ struct AllMatches {
     return d.dot(Vector6(test::solve_positive(C, d)));
   }
 
+  OfEachKind shifts(std::span<ConstraintSet* const> sets) const {
+    const CostTerms terms(sets);
+    return MotionProblem(terms, MotionReferences{}, {}, MotionProblem::make_kernels(terms, RobustLoss::kNone),
+                         solve(sets).T)
+        .shifts();
+  }
+  // The optimum with one kind weighed 1024 times as much, from that with all weighed alike.
+  Vector6 shift(std::size_t favoured) const {
+    const Se3 T = solve(bench.sets).T;
+    bench.sets[favoured]->set_reference(0, 0, 1024);
+    const Vector6 shift = boxminus(solve(bench.sets).T, T);
+    bench.sets[favoured]->set_reference(0, 0);
+    return shift;
+  }
+
   SimulatedPair pair;
   Bench bench;
 };
@@ -82,6 +98,44 @@ TEST(TermsDisagreement, IsZeroOfOneKind) {
   EXPECT_NEAR(matches.disagreement(sets.last(1)), 0, 1e-6);
 }
 
+TEST(TermsShift, IsThatOfASolutionInWhichTheKindWeighsMore) {
+  Gaussian gaussian(45);
+  constexpr auto kPointsColumn = static_cast<int>(LandmarkKind::kPoints);
+  constexpr auto kLinesColumn = static_cast<int>(LandmarkKind::kLines);
+  for (int trial = 0; trial < 20; ++trial) {
+    const AllMatches matches(test::simulate(gaussian, kPoints, kLines));
+    const OfEachKind shifts = std::sqrt(2.0) * matches.shifts(matches.bench.sets);
+    for (const int column : {kPointsColumn, kLinesColumn}) {
+      const Vector6 shift = matches.shift(column == kPointsColumn ? 0 : 1);
+      EXPECT_LT((shifts.col(column) - shift).norm(), 0.1 * shift.norm()) << trial << ", " << column;
+    }
+    EXPECT_EQ(shifts.col(static_cast<int>(LandmarkKind::kSurfaces)).norm(), 0) << trial;
+  }
+}
+
+TEST(TermsShift, LeadsFromOneMotionToTheOther) {
+  Gaussian gaussian(46);
+  const Vector6 apart(0.01, 0, 0, 0, 0, 0);
+  for (int trial = 0; trial < 20; ++trial) {
+    SimulatedPair pair = test::simulate(gaussian, kPoints, 0);
+    pair.truth = boxplus(pair.truth, apart);
+    for (int i = 0; i < kLines; ++i) pair.add_random_line(gaussian);
+    const AllMatches matches(pair);
+    const OfEachKind shifts = std::sqrt(2.0) * matches.shifts(matches.bench.sets);
+    const Vector6 found = shifts.col(static_cast<int>(LandmarkKind::kLines)) -
+                          shifts.col(static_cast<int>(LandmarkKind::kPoints));
+    EXPECT_LT((found - apart).head<3>().norm(), 0.5 * apart.norm()) << trial;
+  }
+}
+
+TEST(TermsShift, IsZeroOfOneKind) {
+  Gaussian gaussian(47);
+  const AllMatches matches(test::simulate(gaussian, kPoints, kLines));
+  const std::span<ConstraintSet* const> sets = matches.bench.sets;
+  EXPECT_LT(matches.shifts(sets.first(1)).norm(), 1e-6);
+  EXPECT_LT(matches.shifts(sets.last(1)).norm(), 1e-6);
+}
+
 // What the odometry gets.
 TEST(TermsDisagreement, IsPartOfTheEstimate) {
   Gaussian gaussian(44);
@@ -91,6 +145,8 @@ TEST(TermsDisagreement, IsPartOfTheEstimate) {
   ASSERT_EQ(estimate.status, StatusCode::kOk);
   EXPECT_GT(estimate.disagreement, 0);
   EXPECT_LT(estimate.disagreement, 30);
+  EXPECT_GT(estimate.shifts.norm(), 0);
+  EXPECT_LT(estimate.shifts.norm(), 0.1);
 }
 
 }  // namespace

@@ -65,8 +65,13 @@ TEST(GravityFilter, EqualsADenseKalmanStep) {
     return P;
   };
   // Two frames later; the last keyframe has drifted too.
-  from = advance(current, {rotation_exp({0.1, 0.3, 0.2}), {0.2, -0.1, 0.3}}, diagonal(0.01, 0.02));
-  current = advance(from, {rotation_exp({0.2, 0.1, -0.3}), {0.1, 0.4, 0.2}}, C_motion);
+  const auto shifts = [&] {
+    OfEachKind of_each;
+    for (int k = 0; k < kLandmarkKinds; ++k) of_each.col(k) = 0.01 * random.vector<6>();
+    return of_each;
+  };
+  from = advance(current, {rotation_exp({0.1, 0.3, 0.2}), {0.2, -0.1, 0.3}}, diagonal(0.01, 0.02), shifts());
+  current = advance(from, {rotation_exp({0.2, 0.1, -0.3}), {0.1, 0.4, 0.2}}, C_motion, shifts());
   reading.down = current.T_world_camera.R.transpose() * g + normal3(random, 0.03);
   const Dense P = joint(from, current, hold);
   EXPECT_GT(test::symmetric_eigenvalues(P)[0], -1e-12) << "a covariance";
@@ -108,6 +113,15 @@ TEST(GravityFilter, EqualsADenseKalmanStep) {
   EXPECT_LT((current_after.covariance_with_gravity - after.block<6, 6>(6, 12)).norm(), 1e-6 * P.norm());
   EXPECT_LT((from_after.covariance_with_gravity - after.block<6, 6>(0, 12)).norm(), 1e-6 * P.norm());
   EXPECT_LT((hold_after.covariance() - after.block<6, 6>(12, 12)).norm(), 1e-6 * P.norm());
+
+  // A shift is corrected as the error that it is.
+  Dense X = Dense::Zero(18, kLandmarkKinds);
+  X.topRows(6) = from.shifts;
+  X.middleRows(6, 6) = current.shifts;
+  const Dense X_after = X - product(K, product(H, X));
+  EXPECT_LT((from_after.shifts - X_after.topRows(6)).norm(), 1e-6);
+  EXPECT_LT((current_after.shifts - X_after.middleRows(6, 6)).norm(), 1e-6);
+  EXPECT_GT((current_after.shifts - current.shifts).norm(), 1e-3) << "there was something to correct";
 }
 
 TEST(GravityFilter, LevelsTheWorldByAReading) {

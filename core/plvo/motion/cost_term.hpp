@@ -29,8 +29,15 @@ struct JointInformation {
   }
 };
 
+// The landmarks that a term measures; a prior measures none.
+enum class LandmarkKind : std::uint8_t { kPoints, kLines, kSurfaces, kNone };
+inline constexpr int kLandmarkKinds = 3;
+// A column for each kind but kNone.
+using OfEachKind = Matrix<6, kLandmarkKinds>;
+
 class CostTerm {
  public:
+  virtual LandmarkKind kind() const = 0;
   // Degrees of freedom of one residual: the dimension of its χ² distribution.
   virtual int dof() const = 0;
   // begin() prepares for motions near T. It evaluates at T what a term holds constant over one solve

@@ -71,6 +71,7 @@ class LineConstraints final : public ConstraintSet {
                   std::span<const Match> matches, const Workspace& workspace);
 
   std::size_t size() const override { return matches_.size(); }
+  LandmarkKind kind() const override { return LandmarkKind::kLines; }
   int dof() const override { return 4; }
   bool usable(std::size_t i) const override { return usable_[i] != 0; }
   Primitive primitive(std::size_t i) const override;

@@ -45,8 +45,9 @@ struct MotionEstimate {
   std::array<Matrix6, kInformedTerms> information = zero_matrices<kInformedTerms>();
   ReferenceInformation references;  // information of all terms, given the nuisance parameters
   double disagreement = 0;          // of points, lines, surfaces and priors (MotionProblem::disagreement)
-  NuisanceEstimate shared;          // zero unless kOk
-  std::array<int, kMaxTerms> inliers{};  // the flags are in each term's inliers()
+  OfEachKind shifts = OfEachKind::Zero();  // what each kind says (MotionProblem::shifts)
+  NuisanceEstimate shared;                 // zero unless kOk
+  std::array<int, kMaxTerms> inliers{};    // the flags are in each term's inliers()
   RansacSummary ransac;
   LmSummary lm;
 

@@ -222,6 +222,37 @@ double MotionProblem::eliminate_pose(std::size_t r, const Matrix6& L) {
   return cost - 0.5 * g.dot(step);
 }
 
+// Multiplies the weights of a kind. Returns whether there are such terms.
+bool MotionProblem::favour(LandmarkKind kind, double factor) {
+  bool any = false;
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    if (terms_[i].kind() != kind) continue;
+    share_[i] *= factor;
+    any = true;
+  }
+  return any;
+}
+
+[[gnu::noinline]] OfEachKind MotionProblem::shifts() {
+  OfEachKind shifts = OfEachKind::Zero();
+  int kinds = 0;
+  for (int k = 0; k < kLandmarkKinds; ++k) {
+    const auto kind = static_cast<LandmarkKind>(k);
+    if (!favour(kind, kFavoured)) continue;
+    ++kinds;
+    Matrix6 H;
+    Vector6 g;
+    (void)linearize(Vector6::Zero(), H, g);
+    (void)favour(kind, 1 / kFavoured);
+    Cholesky<6> cholesky;
+    if (!cholesky.factor(H)) continue;
+    const Vector6 shift = -cholesky.solve(g);
+    if (shift.allFinite()) shifts.col(k) = shift;
+  }
+  if (kinds > 0) shifts /= sqrt(static_cast<double>(kinds));
+  return shifts;
+}
+
 NuisanceEstimate MotionProblem::shared(const Matrix6& covariance) const {
   if (!shared_.any()) return {};
   return {shared_.value,

@@ -116,6 +116,13 @@ class MotionProblem {
   // the squared Mahalanobis distances between the optimum of each term and that of all. If the covariances
   // are true, it is χ² with six degrees of freedom for every term but one.
   double disagreement() const { return disagreement_; }
+  // What each kind of landmark says: by how much the optimum shifts (a ⊞-perturbation of T_current_reference)
+  // if the terms of this kind weigh kFavoured times as much, in one Gauss–Newton step with the robust weights
+  // of the present state. In a direction that the kind does not measure, the others decide, and the shift is
+  // zero. The shifts are divided by the root of the number of kinds: Σ shift shiftᵀ is then the covariance of
+  // the mixture in which each kind is equally likely to be right. Overwrites the candidate, so linearize()
+  // must follow before accept().
+  OfEachKind shifts();
   // The information of all terms at the accepted state, given the nuisance parameters.
   const ReferenceInformation& references() const { return of_references_; }
 
@@ -124,6 +131,11 @@ class MotionProblem {
   using SharedGain = Matrix<NuisanceParameters::kCount, 6>;
   using PoseGain = Matrix<6, NuisanceParameters::kCount>;
 
+  // The favoured kind has 1/32 of its standard deviations. A power of two, so that division undoes the
+  // multiplication bit by bit.
+  static constexpr double kFavoured = 1024;
+
+  bool favour(LandmarkKind kind, double factor);
   double add_reference(std::size_t r, const Se3& T);
   double add_terms(std::size_t r, const Se3& T, bool& any);
   double bring_to_base(std::size_t r, const Se3& T);

@@ -34,6 +34,7 @@ class PointConstraints final : public ConstraintSet {
   const Point3d& current_point(std::size_t i) const { return current_[matches_[i].current]; }
 
   std::size_t size() const override { return matches_.size(); }
+  LandmarkKind kind() const override { return LandmarkKind::kPoints; }
   int dof() const override { return 3; }
   bool usable(std::size_t i) const override { return usable_[i] != 0; }
   Primitive primitive(std::size_t i) const override;

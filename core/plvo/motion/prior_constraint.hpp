@@ -16,6 +16,7 @@ class PriorConstraint final : public CostTerm {
   // covariance: of the ⊞-perturbation of T_propagated; without a Cholesky factor the term is zero.
   PriorConstraint(const Se3& T_propagated, const Matrix6& covariance);
 
+  LandmarkKind kind() const override { return LandmarkKind::kNone; }
   int dof() const override { return 6; }
   bool fixes_motion() const override { return usable_; }
   // Whether rᵀ C⁻¹ r exceeds what the noise of both explains.

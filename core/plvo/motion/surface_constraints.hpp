@@ -56,6 +56,7 @@ class SurfaceConstraints final : public CostTerm {
   SurfaceConstraints(std::span<const SurfaceMatch> matches, const Workspace& workspace);
 
   std::size_t size() const { return matches_.size(); }
+  LandmarkKind kind() const override { return LandmarkKind::kSurfaces; }
   int dof() const override { return 1; }
   // r² / σ². σ² does not contain the common errors of the matches. Where these are large, the matches have
   // less weight (gate, robust loss, learnt σ²); on real sensors this works better than a model of the common

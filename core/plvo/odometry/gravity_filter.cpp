@@ -101,11 +101,15 @@ void GravityFilter::read(const GravityPrior& reading, PoseWithCovariance& from, 
   if (!(residual.dot(weighted) <= kJolt) || expected.dot(z) < 0) return;
 
   const Matrix<2, 6> gain_gravity = S_inverse.lazyProduct(P_gravity.transpose());
+  // What a shift changes in the residual.
+  const Matrix<2, kLandmarkKinds> seen =
+      S_inverse.lazyProduct(J_omega.lazyProduct(current.shifts.bottomRows<3>()));
   const auto correct = [&](PoseWithCovariance& pose, const Matrix<6, 2>& P) {
     pose.T_world_camera = boxplus(pose.T_world_camera, P.lazyProduct(weighted));
     pose.T_world_camera.R = renormalise(pose.T_world_camera.R);
     const Matrix<2, 6> gain = S_inverse.lazyProduct(P.transpose());
     pose.covariance = symmetric<6>(pose.covariance - P.lazyProduct(gain));
+    pose.shifts -= P.lazyProduct(seen);
     pose.covariance_with_gravity -= P.lazyProduct(gain_gravity);
   };
   correct(from, P_from);

@@ -106,11 +106,14 @@ void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool is
   const Matrix6 common_mode = common_mode_error(motion.references, window_.recent_motion().common_mode,
                                                 config_->noise.common_mode_share);
   window_.set_motion({motion.C_H, common_mode});
-  if (config_->noise.learning_rate > 0) disagreement_.note(motion.disagreement);
-  // Reported, but not fed back: references are weighed against each other by what they measure.
+  // Where kinds of measurements disagree, more is reported, but not fed back: references are weighed against
+  // each other by what they measure.
+  const bool learns = config_->noise.learning_rate > 0;
+  if (learns) disagreement_.note(motion.disagreement);
+  const OfEachKind shifts = learns ? motion.shifts : OfEachKind(OfEachKind::Zero());
   const Matrix6 covariance = disagreement_.inflation() * window_.last_motion().total();
   PoseWithCovariance from = window_[window_.keyframe()].pose;
-  PoseWithCovariance pose = advance(from, motion.T_current_reference, covariance);
+  PoseWithCovariance pose = advance(from, motion.T_current_reference, covariance, shifts);
   if (frame.prior.gravity) {
     gravity_.read(*frame.prior.gravity, from, pose);
     window_.move_keyframe(from);

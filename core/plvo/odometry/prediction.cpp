@@ -104,8 +104,8 @@ double depth_after_colour_s(const CameraModel& camera, std::int64_t depth_stamp_
   result.motion_covariance =
       compose_covariance(T_current_last, covariance, T_last_reference,
                          chained ? window.last_motion().total() : Matrix6(Matrix6::Zero()));
-  PoseWithCovariance from = window[chained ? window.keyframe() : window.last()].pose;
-  result.pose = advance(from, result.T_camera_reference, result.motion_covariance);
+  PoseWithCovariance from = window.last_frame().pose;
+  result.pose = advance(from, T_current_last, covariance);
   if (prior.gravity && gravity.known()) GravityFilter(gravity).read(*prior.gravity, from, result.pose);
   return result;
 }

@@ -35,7 +35,7 @@ void report_pose(const PoseWithCovariance& pose, const Vector6& velocity, double
                  TrackResult& result) {
   result.T_world_camera = pose.T_world_camera;
   result.pose_covariance =
-      pose.covariance + stamp_covariance_of_pose(pose.T_world_camera, velocity, stamp_sigma_s);
+      pose.total_covariance() + stamp_covariance_of_pose(pose.T_world_camera, velocity, stamp_sigma_s);
 }
 
 }  // namespace plvo

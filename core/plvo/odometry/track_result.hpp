@@ -34,8 +34,9 @@ struct TrackResult {
 
   // Camera to world. The world is the camera frame of the first frame, unless Config::level_world or
   // set_pose() define another. The covariance is that of the ⊞-perturbation (position, then orientation; m
-  // and rad) in the axes of the world. It accumulates those of the motions and adds the stamp error
-  // (CameraModel::stamp_sigma_s) of this frame alone. While lost, pose and covariance are those of the last
+  // and rad) in the axes of the world. It accumulates those of the motions, contains what points, lines and
+  // surfaces say apart (PoseWithCovariance::shifts), and adds the stamp error (CameraModel::stamp_sigma_s) of
+  // this frame alone. While lost, pose and covariance are those of the last
   // good frame; for a predicted pose the covariance includes the uncertainty of the priors.
   Se3 T_world_camera;
   Matrix6 pose_covariance = Matrix6::Zero();

@@ -4,6 +4,19 @@
 #include "plvo/math/covariance.hpp"
 
 namespace plvo {
+namespace {
+
+// ∂δ_current / ∂ξ of advance(), with T_current_from ⊞ ξ.
+Matrix6 derivative_by_motion(const PoseWithCovariance& current, const Se3& T_current_from) {
+  const Matrix3& R = current.T_world_camera.R;
+  Matrix6 B = Matrix6::Zero();
+  B.block<3, 3>(0, 0) = -R;
+  B.block<3, 3>(0, 3) = -R * skew(T_current_from.t);
+  B.block<3, 3>(3, 3) = -R;
+  return B;
+}
+
+}  // namespace
 
 Matrix6 derivative_of_advance(const PoseWithCovariance& from, const PoseWithCovariance& current) {
   Matrix6 A = Matrix6::Identity();
@@ -12,22 +25,24 @@ Matrix6 derivative_of_advance(const PoseWithCovariance& from, const PoseWithCova
 }
 
 PoseWithCovariance advance(const PoseWithCovariance& from, const Se3& T_current_from,
-                           const Matrix6& motion_covariance) {
+                           const Matrix6& motion_covariance, const OfEachKind& motion_shifts) {
   const Se3 T_from_current = T_current_from.inverse();
   PoseWithCovariance current;
   current.T_world_camera = from.T_world_camera * T_from_current;
   current.T_world_camera.R = renormalise(current.T_world_camera.R);
   current.covariance = compose_covariance(from.T_world_camera, from.covariance, T_from_current,
                                           inverse_covariance(T_current_from, motion_covariance));
-  current.covariance_with_gravity =
-      derivative_of_advance(from, current).lazyProduct(from.covariance_with_gravity);
+  const Matrix6 A = derivative_of_advance(from, current);
+  current.covariance_with_gravity = A.lazyProduct(from.covariance_with_gravity);
+  current.shifts =
+      A.lazyProduct(from.shifts) + derivative_by_motion(current, T_current_from).lazyProduct(motion_shifts);
   return current;
 }
 
 bool settle(PoseWithCovariance& pose) {
   Vector6 scale;
   if (!pose.T_world_camera.is_finite() || !pose.covariance_with_gravity.allFinite() ||
-      !make_bounded_covariance(pose.covariance, &scale))
+      !pose.shifts.allFinite() || !make_bounded_covariance(pose.covariance, &scale))
     return false;
   for (int i = 0; i < 6; ++i)
     if (scale[i] < 1) pose.covariance_with_gravity.row(i) *= scale[i];
