@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/motion/ransac.hpp"
 
+#include <algorithm>
+
 #include "plvo/math/chi_square.hpp"
 #include "plvo/motion/minimal_set.hpp"
 #include "plvo/motion/motion_problem.hpp"
@@ -12,6 +14,8 @@ namespace {
 // A local refinement uses every n-th match, about this many in total. The resulting motion is far more
 // precise than a single match, and the cost does not grow with the number of matches.
 constexpr std::size_t kRefinementMatches = 96;
+// It also uses only every n-th sample of surfaces. The estimate of the motion uses all of them.
+constexpr std::size_t kRefinementSurfaceStride = 4;
 // Scales of the thresholds in the refinement rounds. A motion from three matches is less precise than a
 // match, so the first rounds accept three and two times the distance.
 constexpr double kRoundScales[] = {9, 4, 1};
@@ -292,7 +296,8 @@ void Ransac::refine(Se3& T) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
     // A hypothesis does not need exact weights, so the references' poses are treated as exact.
-    solver_.problem.start(terms_, references_, {}, kernels_, T, stride, true);
+    solver_.problem.start(terms_, references_, {}, kernels_, T, std::max(stride, kRefinementSurfaceStride),
+                          true);
     (void)solver_.solve(LmOptions::one_step());
     T = solver_.problem.T_current_reference();
   }
