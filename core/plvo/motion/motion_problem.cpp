@@ -141,14 +141,18 @@ double MotionProblem::add_terms(std::size_t r, const Se3& T, bool& any) {
     const CostTerm& term = terms_[i];
     if (term.reference() != r) continue;
     any = true;
-    of_term_.set_zero();
-    cost += share_[i] * term.linearize(T, shared_, kernels_[i], of_term_);
-    if (i < kInformedTerms) candidate_information_[i] = share_[i] * of_term_.H.block<6, 6>(0, 0);
-    of_reference_.H += share_[i] * of_term_.H;
-    of_reference_.g += share_[i] * of_term_.g;
-    steps += share_[i] * squared_step(of_term_);
+    JointInformation& of_term = of_terms_[i];
+    if (!are_linearised_) {
+      of_term.set_zero();
+      cost += share_[i] * term.linearize(T, shared_, kernels_[i], of_term);
+      if (i < kInformedTerms) candidate_information_[i] = share_[i] * of_term.H.block<6, 6>(0, 0);
+      steps += share_[i] * squared_step(of_term);
+    }
+    of_reference_.H += share_[i] * of_term.H;
+    of_reference_.g += share_[i] * of_term.g;
   }
-  if (any) candidate_disagreement_ = std::max(candidate_disagreement_, steps - squared_step(of_reference_));
+  if (any && !are_linearised_)
+    candidate_disagreement_ = std::max(candidate_disagreement_, steps - squared_step(of_reference_));
   return cost;
 }
 
@@ -235,13 +239,15 @@ bool MotionProblem::favour(LandmarkKind kind, double factor) {
 
 [[gnu::noinline]] OfEachKind MotionProblem::shifts() {
   OfEachKind shifts = OfEachKind::Zero();
+  Matrix6 H;
+  Vector6 g;
+  (void)linearize(Vector6::Zero(), H, g);
+  are_linearised_ = true;
   int kinds = 0;
   for (int k = 0; k < kLandmarkKinds; ++k) {
     const auto kind = static_cast<LandmarkKind>(k);
     if (!favour(kind, kFavoured)) continue;
     ++kinds;
-    Matrix6 H;
-    Vector6 g;
     (void)linearize(Vector6::Zero(), H, g);
     (void)favour(kind, 1 / kFavoured);
     Cholesky<6> cholesky;
@@ -249,6 +255,7 @@ bool MotionProblem::favour(LandmarkKind kind, double factor) {
     const Vector6 shift = -cholesky.solve(g);
     if (shift.allFinite()) shifts.col(k) = shift;
   }
+  are_linearised_ = false;
   if (kinds > 0) shifts /= sqrt(static_cast<double>(kinds));
   return shifts;
 }

@@ -76,7 +76,7 @@ class MotionProblem {
   // One kernel per term. They are made once because computing the quantile takes longer than a residual.
   static Kernels make_kernels(const CostTerms& terms, RobustLoss loss);
 
-  // To be followed by start(). The object takes 16 kB, so the core keeps one in the arena and reuses it.
+  // To be followed by start(). The object takes 22 kB, so the core keeps one in the arena and reuses it.
   MotionProblem() = default;
   MotionProblem(const CostTerms& terms, const MotionReferences& references, const NuisanceParameters& shared,
                 const Kernels& kernels, const Se3& T) {
@@ -160,8 +160,10 @@ class MotionProblem {
   std::array<Matrix6, kInformedTerms> information_, candidate_information_;
   ReferenceInformation of_references_, candidate_of_references_;
   double disagreement_ = 0, candidate_disagreement_ = 0;
-  // Sums of a linearisation: over all references, over one reference, over one term of it.
-  JointInformation sum_, of_reference_, of_term_;
+  // Sums of a linearisation: over all references, over one reference, over each term without its share.
+  JointInformation sum_, of_reference_;
+  std::array<JointInformation, kMaxTerms> of_terms_;
+  bool are_linearised_ = false;  // the terms, at the candidate: only their shares have changed since
 };
 
 // The solver that RANSAC's refinements and the final estimate share, and the current estimate of the
