@@ -241,6 +241,7 @@ class ConsensusSolver {
     if (!converged(estimate_.lm.status) && estimate_.lm.status != LmStatus::kStalled)
       return StatusCode::kNotConverged;
     estimate_.contain(apart);
+    // Not for a glance, whose motion is never reported.
     if (start_.search_beside) estimate_.shifts = solving_.problem.shifts();
     estimate_.T_current_reference = T_;
     estimate_.motions = motions_to_current(T_, solving_.references);

@@ -76,7 +76,7 @@ class MotionProblem {
   // One kernel per term. They are made once because computing the quantile takes longer than a residual.
   static Kernels make_kernels(const CostTerms& terms, RobustLoss loss);
 
-  // To be followed by start(). The object takes 22 kB, so the core keeps one in the arena and reuses it.
+  // To be followed by start(). The object takes 26 kB, so the core keeps one in the arena and reuses it.
   MotionProblem() = default;
   MotionProblem(const CostTerms& terms, const MotionReferences& references, const NuisanceParameters& shared,
                 const Kernels& kernels, const Se3& T) {

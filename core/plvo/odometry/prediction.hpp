@@ -31,9 +31,9 @@ struct SensedPose {
   Matrix6 motion_covariance;
   PoseWithCovariance pose;
 };
-// The pose after this motion since the last good frame. It is chained to the keyframe or, without one or with
-// given_up, to the last good frame. The correction by gravity applies to this frame only: the kept frames
-// were observed, this one was not.
+// The pose after this motion since the last good frame, and the motion since the keyframe or, without one or
+// with given_up, since the last good frame. The correction by gravity applies to this frame only: the kept
+// frames were observed, this one was not.
 SensedPose pose_after(const Window& window, const GravityFilter& gravity, const Se3& T_current_last,
                       const Matrix6& covariance, const MotionPrior& prior, bool given_up = false);
 // The pose by the priors alone.
