@@ -15,9 +15,10 @@ constexpr double kNeesBound = 20;
 
 struct HardSequence {
   int tracked = 0, lost = 0, repeated = 0;
-  double error_m = 0;   // the largest of a position
-  double nees = 0;      // the largest of the motion of a tracked frame
-  int false_poses = 0;  // tracked frames whose pose has a NEES beyond the bound
+  double error_m = 0;       // the largest of a position
+  double nees = 0;          // the largest of the motion of a tracked frame
+  int false_poses = 0;      // tracked frames whose pose has a NEES beyond the bound
+  double disagreement = 1;  // the largest of points, lines and surfaces
 };
 
 SimulatorOptions hard_options(int frames, std::initializer_list<const char*> names) {
@@ -36,6 +37,7 @@ HardSequence track_hard(const SimulatorOptions& options, const Limits& limits = 
     const Vector3 position = (tracked.truth.front().inverse() * tracked.truth[i]).t;
     figures.error_m = std::max(figures.error_m, (result.T_world_camera.t - position).norm());
     if (result.state != TrackState::kTracking) continue;
+    figures.disagreement = std::max(figures.disagreement, result.disagreement);
     ++figures.tracked;
     figures.nees = std::max(figures.nees, tracked.nees_of_motion(i));
     figures.false_poses += tracked.nees_of_pose(i) > kNeesBound ? 1 : 0;
@@ -49,6 +51,7 @@ TEST(HardSequences, ACombInDepthIsTrackedAsDepthWithoutHoles) {
   EXPECT_EQ(comb.tracked, 59);
   EXPECT_LT(comb.error_m, 0.008);
   EXPECT_LT(comb.nees, kNeesBound);
+  EXPECT_LT(comb.disagreement, 20) << "the room stands still";
 }
 
 TEST(HardSequences, RepeatedFramesArePassedOver) {
@@ -87,6 +90,7 @@ TEST(HardSequences, TheCovarianceContainsACompromiseWithAMirror) {
   const HardSequence mirror = track_hard(hard_options(60, {"mirror"}), limits);
   EXPECT_EQ(mirror.tracked, 59);
   EXPECT_LE(mirror.false_poses, 6);
+  EXPECT_GT(mirror.disagreement, 30);
 }
 
 void expect_rest_before_a_board(SceneName scene, std::uint64_t seed, double most_m) {

@@ -72,6 +72,7 @@ inline void expect_same(const TrackResult& result, const plvo_result& c) {
   EXPECT_EQ(result.world, c.world);
   EXPECT_EQ(result.restarted ? 1 : 0, c.restarted);
   EXPECT_EQ(result.feature_step, c.feature_step);
+  EXPECT_TRUE(same_bits(result.disagreement, c.disagreement));
 }
 
 }  // namespace plvo

@@ -154,6 +154,7 @@ TEST(SoundResults, EveryResultIsCheckedOnReturn) {
   EXPECT_TRUE(refused([&](TrackResult& bad) { bad.pose_covariance(5, 5) = 1 / 0.0; }));
   EXPECT_TRUE(refused([&](TrackResult& bad) { bad.motion_covariance(0, 5) = nan; }));
   EXPECT_TRUE(refused([&](TrackResult& bad) { bad.mean_brightness = nan; }));
+  EXPECT_TRUE(refused([&](TrackResult& bad) { bad.disagreement = nan; }));
 }
 
 TEST(SoundResults, SetPoseBoundsTheCovariance) {

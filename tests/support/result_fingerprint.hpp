@@ -23,6 +23,7 @@ inline Fingerprint fingerprint_of(const TrackResult& result) {
   print.add(result.ransac_iterations);
   print.add(result.lm_iterations);
   print.add(result.mean_brightness);
+  print.add(result.disagreement);
   return print;
 }
 

@@ -54,7 +54,8 @@ inline bool is_sound_state(const TrackResult& result) {
 inline bool is_sound(const TrackResult& result) {
   return is_sound_pose(result.T_world_camera) && is_sound_pose(result.T_camera_reference) &&
          is_sound_covariance(result.pose_covariance) && is_sound_covariance(result.motion_covariance) &&
-         is_sound_state(result) && result.mean_brightness >= 0 && result.mean_brightness <= 255;
+         is_sound_state(result) && result.mean_brightness >= 0 && result.mean_brightness <= 255 &&
+         result.disagreement >= 1 && result.disagreement <= 1000;
 }
 
 }  // namespace plvo::test

@@ -328,11 +328,9 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
                                           motion_in_map(old_b, b.loop.T_old_new, b.loop.covariance),
                                       by_b.t);
   const Matrix3 turn = by_b.R * new_b.T_map_keyframe.R.transpose();
-  Matrix6 J = Matrix6::Zero();
-  J.block<3, 3>(0, 0) = J.block<3, 3>(3, 3) = turn;
   const Matrix6 of_new =
       about_position(memory_.graph.chain_covariance(a.new_slot, b.new_slot), new_b.T_map_keyframe.t);
-  covariance += J.lazyProduct(of_new).eval().lazyProduct(J.transpose());
+  covariance += transform_covariance(rotation_of_both(turn), of_new);
   if (exceeds(covariance, kObservedMotion)) return Relation::kUnrelated;
   return lies_within(boxminus(by_a, by_b), covariance) ? Relation::kAgree : Relation::kContradict;
 }

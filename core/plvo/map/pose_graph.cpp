@@ -22,7 +22,7 @@ Se3 displacement(const Vector6& x) { return {rotation_exp(x.tail<3>()), x.head<3
 Matrix6 transform(const Matrix6& C, const Matrix3& lever) {
   Matrix6 J = Matrix6::Identity();
   J.block<3, 3>(0, 3) = lever;
-  return J.lazyProduct(C).eval().lazyProduct(J.transpose());
+  return transform_covariance(J, C);
 }
 
 // The measured motion from one node to another, given that in either direction.
@@ -43,11 +43,7 @@ Matrix6 about_position(const Matrix6& covariance, const Vector3& t) {
 }
 
 Matrix6 motion_in_map(const Se3& T_i, const Se3& T_ij, const Matrix6& covariance) {
-  Matrix6 J = Matrix6::Zero();
-  J.block<3, 3>(0, 0) = T_i.R;
-  J.block<3, 3>(3, 3) = T_i.R;
-  const Matrix6 turned = J.lazyProduct(covariance).eval().lazyProduct(J.transpose());
-  return about_origin(turned, T_i * T_ij.t);
+  return about_origin(transform_covariance(rotation_of_both(T_i.R), covariance), T_i * T_ij.t);
 }
 
 Vector6 difference(const Se3& T) {

@@ -98,27 +98,32 @@ Vector6 boxminus(const Se3& S, const Se3& T) {
   return delta;
 }
 
+// Not inlined, as most of its callers are called once for a frame.
+[[gnu::noinline]] Matrix6 transform_covariance(const Matrix6& J, const Matrix6& C) {
+  return J.lazyProduct(C).eval().lazyProduct(J.transpose());
+}
+
+[[gnu::noinline]] Matrix6 rotation_of_both(const Matrix3& R) {
+  Matrix6 J = Matrix6::Zero();
+  J.block<3, 3>(0, 0) = R;
+  J.block<3, 3>(3, 3) = R;
+  return J;
+}
+
 Matrix6 compose_covariance(const Se3& T_a, const Matrix6& C_a, const Se3& T_b, const Matrix6& C_b) {
   // First-order expansion of (T_a ⊞ (v_a, ω_a))(T_b ⊞ (v_b, ω_b)):
   //   v = v_a − [R_a t_b]× ω_a + R_a v_b,   ω = ω_a + R_a ω_b.
   Matrix6 J_a = Matrix6::Identity();
   J_a.block<3, 3>(0, 3) = -skew(T_a.R * T_b.t);
-  Matrix6 J_b = Matrix6::Zero();
-  J_b.block<3, 3>(0, 0) = T_a.R;
-  J_b.block<3, 3>(3, 3) = T_a.R;
-  const Matrix6 first = (J_a.lazyProduct(C_a)).eval().lazyProduct(J_a.transpose());
-  const Matrix6 second = (J_b.lazyProduct(C_b)).eval().lazyProduct(J_b.transpose());
-  return first + second;
+  return transform_covariance(J_a, C_a) + transform_covariance(rotation_of_both(T_a.R), C_b);
 }
 
 Matrix6 inverse_covariance(const Se3& T_a, const Matrix6& C_a) {
   // T^-1 = (Rᵀ, −Rᵀ t); with R → Exp(ω) R: v' = −Rᵀ v − Rᵀ [t]× ω … and ω' = −Rᵀ ω.
   const Matrix3 R_transposed = T_a.R.transpose();
-  Matrix6 J = Matrix6::Zero();
-  J.block<3, 3>(0, 0) = -R_transposed;
+  Matrix6 J = rotation_of_both(-R_transposed);
   J.block<3, 3>(0, 3) = -R_transposed * skew(T_a.t);
-  J.block<3, 3>(3, 3) = -R_transposed;
-  return (J.lazyProduct(C_a)).eval().lazyProduct(J.transpose());
+  return transform_covariance(J, C_a);
 }
 
 Matrix3 frame_along(const Vector3& d) {

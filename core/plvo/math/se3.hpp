@@ -44,6 +44,10 @@ Se3 boxplus(const Se3& T, const Vector6& delta);
 // δ with boxplus(T, δ) = S.
 Vector6 boxminus(const Se3& S, const Se3& T);
 
+// J C Jᵀ: the covariance of J e, where e has the covariance C.
+Matrix6 transform_covariance(const Matrix6& J, const Matrix6& C);
+// Rotates both parts of a perturbation.
+Matrix6 rotation_of_both(const Matrix3& R);
 // First-order covariances of the ⊞-perturbations of the product T_a T_b and of the inverse T_a^-1. C_a and
 // C_b are the covariances of T_a and T_b, which must be independent.
 Matrix6 compose_covariance(const Se3& T_a, const Matrix6& C_a, const Se3& T_b, const Matrix6& C_b);

@@ -24,14 +24,6 @@ using Matrix3 = Matrix<3, 3>;
 using Matrix4 = Matrix<4, 4>;
 using Matrix6 = Matrix<6, 6>;
 
-// Returns matrices set to zero. Eigen leaves entries uninitialised by default.
-template <std::size_t Count>
-std::array<Matrix6, Count> zero_matrices() {
-  std::array<Matrix6, Count> matrices;
-  for (Matrix6& matrix : matrices) matrix.setZero();
-  return matrices;
-}
-
 // (M + Mᵀ) / 2, which removes the rounding of a product that is symmetric.
 template <int N>
 Matrix<N, N> symmetric(const Matrix<N, N>& M) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "plvo/math/cholesky.hpp"
+#include "plvo/math/se3.hpp"
 #include "plvo/math/symmetric_eigen.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -15,11 +16,11 @@ Matrix6 common_mode_error(const ReferenceInformation& information, const Matrix6
   if (!cholesky.factor(J)) return Matrix6::Zero();
   Matrix6 whiten;  // L⁻¹, J = L Lᵀ
   for (int i = 0; i < 6; ++i) whiten.col(i) = cholesky.solve_lower(Vector6::Unit(i));
-  const Matrix6 others = whiten.lazyProduct(information.others).eval().lazyProduct(whiten.transpose());
+  const Matrix6 others = transform_covariance(whiten, information.others);
   const SymmetricEigen<6> eigen = symmetric_eigen<6>(others);
   const Matrix6 T = whiten.transpose().lazyProduct(eigen.vectors);
   const Matrix6 T_inverse = T.transpose().lazyProduct(J);
-  Matrix6 d = T_inverse.lazyProduct(D).eval().lazyProduct(T_inverse.transpose());
+  Matrix6 d = transform_covariance(T_inverse, D);
   Vector6 k, added;
   for (int i = 0; i < 6; ++i) {
     k[i] = std::clamp(eigen.values[i], 0.0, 1.0);
@@ -28,8 +29,7 @@ Matrix6 common_mode_error(const ReferenceInformation& information, const Matrix6
   }
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) d(i, j) = k[i] * d(i, j) * k[j] + (i == j ? added[i] : 0);
-  const Matrix6 sum = T.lazyProduct(d).eval().lazyProduct(T.transpose());
-  return symmetric<6>(sum);
+  return symmetric<6>(transform_covariance(T, d));
 }
 
 }  // namespace plvo

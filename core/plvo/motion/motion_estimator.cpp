@@ -229,10 +229,7 @@ class ConsensusSolver {
 
   // Writes the motion and its covariance, if the consensus determines them.
   StatusCode conclude(const Vector6& apart) {
-    for (std::size_t i = 0; i < terms_.size() && i < kInformedTerms; ++i)
-      estimate_.information[i] = solving_.problem.information(i);
     estimate_.references = solving_.problem.references();
-    estimate_.disagreement = solving_.problem.disagreement();
     // An undetermined motion does not converge either. kDegenerate is tested first because it is the cause.
     if (!T_.is_finite() || !ransac_.consensus_fixes_motion(seed_) ||
         !invert_information(solving_.solver.hessian(), config_, estimate_.C_H))

@@ -40,11 +40,7 @@ struct MotionEstimate {
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
   // Σ⁻¹ J)⁻¹; m², m rad, rad². contain() adds the difference from another motion.
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
-  // Information matrices of the first kInformedTerms terms, in their order: C_P⁻¹ (14), C_L⁻¹ (19). If there
-  // are no other terms and C_H contains no other motion, their sum is C_H⁻¹ (26). Zero for an empty term.
-  std::array<Matrix6, kInformedTerms> information = zero_matrices<kInformedTerms>();
-  ReferenceInformation references;  // information of all terms, given the nuisance parameters
-  double disagreement = 0;          // of points, lines, surfaces and priors (MotionProblem::disagreement)
+  ReferenceInformation references;         // information of all terms, given the nuisance parameters
   OfEachKind shifts = OfEachKind::Zero();  // what each kind says (MotionProblem::shifts)
   NuisanceEstimate shared;                 // zero unless kOk
   std::array<int, kMaxTerms> inliers{};    // the flags are in each term's inliers()

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/motion/motion_problem.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include "plvo/math/cholesky.hpp"
@@ -43,19 +42,6 @@ double share_of(const CostTerm& term) {
   return term.weight() * (n > 1 ? 1 / (1 + (n - 1) * term.correlation()) : 1);
 }
 
-// gᵀ H⁻¹ g. Directions without information have no gradient; the ridge keeps H positive definite there. Zero
-// if there is no information at all.
-// Not inlined: its matrices would otherwise be on the stack while a term is linearised.
-[[gnu::noinline]] double squared_step(const JointInformation& sum) {
-  constexpr double kRidge = 1e-6;
-  Matrix6 H = sum.H.block<6, 6>(0, 0);
-  H.diagonal() *= 1 + kRidge;
-  Cholesky<6> cholesky;
-  if (!cholesky.factor(H)) return 0;
-  const Vector6 g = sum.g.head<6>();
-  return g.dot(cholesky.solve(g));
-}
-
 // Lower Cholesky factor of a semidefinite matrix. Columns with a pivot of zero are zero.
 Matrix6 root(const Matrix6& S) {
   Matrix6 L = Matrix6::Zero();
@@ -90,9 +76,7 @@ void MotionProblem::start(const CostTerms& terms, const MotionReferences& refere
   candidate_inverse_.setZero();
   gain_.setZero();
   candidate_gain_.setZero();
-  for (Matrix6& information : information_) information.setZero();
   of_references_ = {};
-  disagreement_ = 0;
   for (std::size_t r = 0; r < kMaxPoses; ++r) candidate_moved_[r] = references_[r].moved;
   for (PoseGain& gain : pose_gain_) gain.setZero();
   const MotionsToCurrent motions = motions_to_current(T, references_);
@@ -107,7 +91,6 @@ double MotionProblem::linearize(const Vector6& step, Matrix6& H, Vector6& g) {
   candidate_ = boxplus(T_, step);
   const MotionsToCurrent motions = motions_to_current(candidate_, references_);
   sum_.set_zero();
-  candidate_disagreement_ = 0;
   double cost = 0;
   for (std::size_t r = 0; r < kMaxPoses; ++r) {
     cost += add_reference(r, motions[r]);
@@ -136,7 +119,7 @@ double MotionProblem::add_reference(std::size_t r, const Se3& T) {
 
 double MotionProblem::add_terms(std::size_t r, const Se3& T, bool& any) {
   of_reference_.set_zero();
-  double cost = 0, steps = 0;
+  double cost = 0;
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const CostTerm& term = terms_[i];
     if (term.reference() != r) continue;
@@ -145,14 +128,10 @@ double MotionProblem::add_terms(std::size_t r, const Se3& T, bool& any) {
     if (!are_linearised_) {
       of_term.set_zero();
       cost += share_[i] * term.linearize(T, shared_, kernels_[i], of_term);
-      if (i < kInformedTerms) candidate_information_[i] = share_[i] * of_term.H.block<6, 6>(0, 0);
-      steps += share_[i] * squared_step(of_term);
     }
     of_reference_.H += share_[i] * of_term.H;
     of_reference_.g += share_[i] * of_term.g;
   }
-  if (any && !are_linearised_)
-    candidate_disagreement_ = std::max(candidate_disagreement_, steps - squared_step(of_reference_));
   return cost;
 }
 
@@ -161,10 +140,8 @@ double MotionProblem::add_terms(std::size_t r, const Se3& T, bool& any) {
 // the stack at the same time.
 [[gnu::noinline]] double MotionProblem::bring_to_base(std::size_t r, const Se3& T) {
   const Matrix3 Q = skew(T.R * references_[r].T_reference_base.t);
-  Matrix6 B = Matrix6::Zero();
-  B.block<3, 3>(0, 0) = T.R;
+  Matrix6 B = rotation_of_both(T.R);
   B.block<3, 3>(0, 3) = Q * T.R;
-  B.block<3, 3>(3, 3) = T.R;
   double cost = 0;
   // −B is the derivative of T_current_reference with respect to the perturbation of T_reference_base.
   if (references_[r].covariance.trace() > 0) cost = eliminate_pose(r, -B.lazyProduct(root_[r]));
@@ -278,9 +255,7 @@ void MotionProblem::accept() {
   shared_.value = candidate_shared_;
   inverse_ = candidate_inverse_;
   gain_ = candidate_gain_;
-  information_ = candidate_information_;
   of_references_ = candidate_of_references_;
-  disagreement_ = candidate_disagreement_;
 }
 
 void MotionProblem::advance(const Vector6& step) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The joint maximum-likelihood problem (21)–(23) in the form that the Levenberg–Marquardt solver needs. It
-// has six parameters; every term eliminates its own landmarks. H is C_P⁻¹ + C_L⁻¹ + …, equation (26); the
-// summands are stored per term.
+// has six parameters; every term eliminates its own landmarks. H is C_P⁻¹ + C_L⁻¹ + …, equation (26).
 #pragma once
 
 #include <array>
@@ -22,8 +21,6 @@ inline constexpr std::size_t kMaxPoses = kMaxReferences + 1;
 inline constexpr std::size_t kMaxConstraintSets = 2 * kMaxReferences;
 // These, the propagated prior, then the surfaces of each reference.
 inline constexpr std::size_t kMaxTerms = kMaxConstraintSets + 1 + kMaxReferences;
-// The information is stored for the first terms only: points and lines of the base.
-inline constexpr std::size_t kInformedTerms = 2;
 
 // The terms of the cost, in a fixed order: the sets that RANSAC draws from, then all others. Terms beyond the
 // capacity are left out.
@@ -104,18 +101,6 @@ class MotionProblem {
   const MotionReferences& poses() const { return references_; }
   // The nuisance parameters at the accepted state, given the covariance of the motion.
   NuisanceEstimate shared(const Matrix6& covariance) const;
-  // The Schur complement of one term at the accepted state, given the nuisance parameters: C_P⁻¹ (14), C_L⁻¹
-  // (19). term < kInformedTerms.
-  const Matrix6& information(std::size_t term) const { return information_[term]; }
-  // By how much the terms contradict each other at the accepted state: Cochran's Q (Cochran 1954) of the
-  // terms of a reference, for the reference where it is largest. With the information H and the gradient g of
-  // each term about the motion, given the nuisance parameters,
-  //
-  //   Q = Σ gᵀ H⁻¹ g − (Σ g)ᵀ (Σ H)⁻¹ (Σ g):
-  //
-  // the squared Mahalanobis distances between the optimum of each term and that of all. If the covariances
-  // are true, it is χ² with six degrees of freedom for every term but one.
-  double disagreement() const { return disagreement_; }
   // What each kind of landmark says: by how much the optimum shifts (a ⊞-perturbation of T_current_reference)
   // if the terms of this kind weigh kFavoured times as much, in one Gauss–Newton step with the robust weights
   // of the present state. In a direction that the kind does not measure, the others decide, and the shift is
@@ -157,9 +142,7 @@ class MotionProblem {
   // Covariance of the nuisance parameters given the motion, and their derivative with respect to the motion.
   SharedMatrix inverse_, candidate_inverse_;
   SharedGain gain_, candidate_gain_;
-  std::array<Matrix6, kInformedTerms> information_, candidate_information_;
   ReferenceInformation of_references_, candidate_of_references_;
-  double disagreement_ = 0, candidate_disagreement_ = 0;
   // Sums of a linearisation: over all references, over one reference, over each term without its share.
   JointInformation sum_, of_reference_;
   std::array<JointInformation, kMaxTerms> of_terms_;

@@ -51,7 +51,7 @@ Status BaseMotion::add(const WheelStep& step, double error_s) {
   // it into the axes before the step.
   const Matrix6 J_r = mean_exponential<6>(twist_matrix(-skew(turn), -skew(way)));
   const Matrix6 J = twist_matrix(T.R, Matrix3::Zero()).lazyProduct(J_r);
-  const Matrix6 C_per_s2 = J.lazyProduct(step.covariance).eval().lazyProduct(J.transpose());
+  const Matrix6 C_per_s2 = transform_covariance(J, step.covariance);
   const double lasts_s = step.seconds > error_s ? step.seconds : error_s;
   covariance_ = compose_covariance(T_before_now_, covariance_, T, step.seconds * lasts_s * C_per_s2);
   T_before_now_ = T_before_now_ * T;

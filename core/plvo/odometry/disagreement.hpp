@@ -1,35 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// The factor on the covariance of the motion where points, lines, surfaces and priors have contradicted each
-// other of late (MotionProblem::disagreement). They then cannot all show the motion of the camera, and the
-// estimate is a compromise whose covariance, (Σ H)⁻¹, is too small.
+// The factor on the covariance of the motion where points, lines and surfaces have contradicted each other of
+// late. They then cannot all show the motion of the camera. The estimate is a compromise, and its covariance,
+// (Σ H)⁻¹, is too small.
 //
-// If the covariances are true, Q is χ² with six degrees of freedom for two kinds of measurements. Its mean
-// over a few frames is Q̄. The excess Q̄ / 6 − 1 is the variance of the compromise beyond the noise, relative
-// to the noise (the square of Birge's ratio, less one: R. T. Birge, "The calculation of errors by the method
-// of least squares", Phys. Rev. 40, 1932). The noise of a frame is independent of the next one's. The
-// compromise is the same in frame after frame: over n frames its variance grows by n², n times as fast. n is
-// a second's.
+// What makes a kind disagree is the same from frame to frame. So the shift S_k that it demands
+// (PoseWithCovariance::shifts) is added up over the last half second, and so is the noise N of the motions:
+//
+//   S_k ← κ T S_k + ΔS_k,   N ← κ² T N Tᵀ + C,   κ = τ / (τ + Δt),
+//
+// T moves an error of the last pose to the present one. If noise alone shifted the K kinds, their squared
+// distances K S_kᵀ N⁻¹ S_k (a shift is divided by √K) would be 6 K in sum. What is beyond that, divided by
+// six, is the variance of the compromise relative to the noise, as in the method of moments of DerSimonian
+// and Laird ("Meta-analysis in clinical trials", Controlled Clinical Trials 7, 1986):
+//
+//   factor = 1 + (K Σ S_kᵀ N⁻¹ S_k − 6 K) / 6, at least 1.
+//
+// N is the noise of the compromise, not that of the kind alone, which would excuse a kind that measures
+// little.
 #pragma once
+
+#include "plvo/odometry/window/pose_with_covariance.hpp"
 
 namespace plvo {
 
 class Disagreement {
  public:
-  // Notes Q of a frame that was tracked.
-  void note(double q) {
-    const double bounded = q < kMost ? q : kMost;  // also if q is not a number
-    mean_ += kRate * (bounded - mean_);
-  }
+  // Notes a frame that was tracked, elapsed_s after the last one. pose: advance() of an earlier pose by
+  // T_current_from, whose ⊞-perturbation has the covariance C.
+  void note(const PoseWithCovariance& last, const PoseWithCovariance& pose, const Se3& T_current_from,
+            const Matrix6& C, double elapsed_s);
   // The factor, at least 1.
-  double inflation() const { return mean_ > kExpected ? 1 + kFrames * (mean_ / kExpected - 1) : 1; }
+  double inflation() const { return inflation_; }
 
  private:
-  static constexpr double kExpected = 6;
-  static constexpr double kFrames = 30;
-  static constexpr double kRate = 0.2;  // Q̄ is over about five frames
-  static constexpr double kMost = 100;  // bound on the influence of one frame
-
-  double mean_ = 0;
+  // In the axes of the last camera, so that they do not depend on the world.
+  OfEachKind shifts_ = OfEachKind::Zero();
+  Matrix6 noise_ = Matrix6::Zero();
+  double inflation_ = 1;
 };
 
 }  // namespace plvo

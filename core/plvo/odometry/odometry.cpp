@@ -101,6 +101,7 @@ Odometry::Odometry() = default;
   result.pose_covariance.setZero();
   result.motion_covariance.setZero();
   result.mean_brightness = 0;
+  result.disagreement = 1;
   result.relocalised = result.restarted = result.repeated = false;
   result.state = TrackState::kLost;
   result.status = {StatusCode::kDegenerate,
@@ -256,7 +257,6 @@ void Odometry::reset() {
   window_.reset();
   view_slot_ = window_.current();
   noise_ = config_->noise.initial;
-  disagreement_ = {};
   last_stamp_ns_.reset();
   colour_.forget();
   depth_.forget();

@@ -41,6 +41,15 @@ Status tell_carried(CarriedCells& carried) {
       .append(bounds.bottom - 1);
 }
 
+// A status that says that points, lines and surfaces do not show one motion.
+Status tell_disagreement(double inflation) {
+  constexpr double kWorthSaying = 100;  // the SD is more than ten times as large
+  if (inflation <= kWorthSaying) return {};
+  return Status(StatusCode::kOk,
+                "points, lines and surfaces disagree about the motion: its covariance is multiplied by ")
+      .append(static_cast<std::ptrdiff_t>(inflation));
+}
+
 // Prepares the features and the image of the current frame for the next ones.
 void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool is_keyframe,
                     ReferenceTracking& tracking) {
@@ -106,20 +115,30 @@ void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool is
   const Matrix6 common_mode = common_mode_error(motion.references, window_.recent_motion().common_mode,
                                                 config_->noise.common_mode_share);
   window_.set_motion({motion.C_H, common_mode});
-  // Where kinds of measurements disagree, more is reported, but not fed back: references are weighed against
+  // Where kinds of landmarks disagree, more is reported, but not fed back: references are weighed against
   // each other by what they measure.
   const bool learns = config_->noise.learning_rate > 0;
-  if (learns) disagreement_.note(motion.disagreement);
   const OfEachKind shifts = learns ? motion.shifts : OfEachKind(OfEachKind::Zero());
-  const Matrix6 covariance = disagreement_.inflation() * window_.last_motion().total();
+  Matrix6 covariance = window_.last_motion().total();
   PoseWithCovariance from = window_[window_.keyframe()].pose;
   PoseWithCovariance pose = advance(from, motion.T_current_reference, covariance, shifts);
+  const Window::Frame& last = window_.last_frame();
+  const std::int64_t since_last_ns = elapsed_ns(last.features.stamp_ns, frame.stamp_ns());
+  if (learns && !result.relocalised && !result.restarted)
+    disagreement_.note(last.pose, pose, motion.T_current_reference, motion.C_H,
+                       static_cast<double>(since_last_ns) * 1e-9);
+  if (disagreement_.inflation() > 1) {
+    covariance *= disagreement_.inflation();
+    pose = advance(from, motion.T_current_reference, covariance, shifts);
+  }
+  result.disagreement = disagreement_.inflation();
+  if (result.status.message()[0] == '\0') result.status = tell_disagreement(result.disagreement);
   if (frame.prior.gravity) {
     gravity_.read(*frame.prior.gravity, from, pose);
     window_.move_keyframe(from);
   }
   window_.set_pose(window_.current(), pose);
-  window_.set_velocity(elapsed_ns(window_.last_frame().features.stamp_ns, frame.stamp_ns()));
+  window_.set_velocity(since_last_ns);
   const Vector6& velocity = window_.current_frame().velocity.value;
   result.motion_covariance =
       covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity,
@@ -221,6 +240,7 @@ void Odometry::forget_world() {
   start_is_set_ = false;
   propagated_prior_ = PropagatedPrior();
   gravity_.forget();
+  disagreement_ = {};
   lost_since_ns_.reset();
   depth_.forget_stop();
   world_is_lost_ = true;

@@ -24,7 +24,8 @@ bool make_sound(TrackResult& result) {
   for (const Se3* T : {&result.T_world_camera, &result.T_camera_reference})
     if (!T->is_finite() || !is_rotation(T->R)) return false;
   return make_bounded_covariance(result.pose_covariance) &&
-         make_bounded_covariance(result.motion_covariance) && is_finite(result.mean_brightness);
+         make_bounded_covariance(result.motion_covariance) && is_finite(result.mean_brightness) &&
+         is_finite(result.disagreement);
 }
 
 }  // namespace plvo

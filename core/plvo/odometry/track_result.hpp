@@ -60,6 +60,9 @@ struct TrackResult {
   // The colour image is that of the frame before, so no motion was measured: the pose is predicted, and its
   // covariance includes the process noise. The state is kTracking, and the status is ok() with a message.
   bool repeated = false;
+  // By how much points, lines and surfaces disagree about the motion: the factor of disagreement.hpp, of the
+  // last half second, 1 … 1000. 1: they agree as well as the noise allows. Above 100 the status says so.
+  double disagreement = 1;
   int ransac_iterations = 0;
   int lm_iterations = 0;
   int feature_step = 0;        // of Config::budget; 0: all the features that fit

@@ -149,6 +149,7 @@ void give_result(const plvo::TrackResult& result, plvo_result* caller) {
   whole.repeated = result.repeated ? 1 : 0;
   whole.world = result.world;
   whole.restarted = result.restarted ? 1 : 0;
+  whole.disagreement = result.disagreement;
   plvo::c::give_struct(whole, caller);
 }
 

@@ -215,12 +215,15 @@ typedef struct plvo_result {
   /* 1: the colour image is that of the frame before, so the pose is predicted; the state is PLVO_TRACKING,
    * the status PLVO_OK with a message. */
   int32_t repeated;
-  /* Of T_world_camera, from 0. Poses in different worlds have no known relation. It rises with plvo_reset, and
-   * after a loss so long that the position may be anywhere. */
+  /* Of T_world_camera, from 0. Poses in different worlds have no known relation. It rises with plvo_reset,
+   * and after a loss so long that the position may be anywhere. */
   uint32_t world;
   /* 1: tracking goes on in the same world after a loss, and the images did not observe the motion meanwhile;
    * pose_covariance includes it. */
   int32_t restarted;
+  /* By how much points, lines and surfaces disagree about the motion: the factor by which motion_covariance
+   * is multiplied, 1 to 1000. Above 100 the message of the status says so. */
+  double disagreement;
 } plvo_result;
 
 /* The unit quaternion x y z w (Hamilton, w >= 0) of the rotation in a 3×4 matrix. */

@@ -72,6 +72,7 @@ void bind_result(py::module_& module) {
       .def_readonly("repeated", &TrackResult::repeated)
       .def_readonly("world", &TrackResult::world)
       .def_readonly("restarted", &TrackResult::restarted)
+      .def_readonly("disagreement", &TrackResult::disagreement)
       .def_readonly("feature_step", &TrackResult::feature_step)
       .def("__repr__", &describe);
 }

@@ -9,10 +9,8 @@ namespace {
 // ∂δ_current / ∂ξ of advance(), with T_current_from ⊞ ξ.
 Matrix6 derivative_by_motion(const PoseWithCovariance& current, const Se3& T_current_from) {
   const Matrix3& R = current.T_world_camera.R;
-  Matrix6 B = Matrix6::Zero();
-  B.block<3, 3>(0, 0) = -R;
+  Matrix6 B = rotation_of_both(-R);
   B.block<3, 3>(0, 3) = -R * skew(T_current_from.t);
-  B.block<3, 3>(3, 3) = -R;
   return B;
 }
 
@@ -26,16 +24,14 @@ Matrix6 derivative_of_advance(const PoseWithCovariance& from, const PoseWithCova
 
 PoseWithCovariance advance(const PoseWithCovariance& from, const Se3& T_current_from,
                            const Matrix6& motion_covariance, const OfEachKind& motion_shifts) {
-  const Se3 T_from_current = T_current_from.inverse();
   PoseWithCovariance current;
-  current.T_world_camera = from.T_world_camera * T_from_current;
+  current.T_world_camera = from.T_world_camera * T_current_from.inverse();
   current.T_world_camera.R = renormalise(current.T_world_camera.R);
-  current.covariance = compose_covariance(from.T_world_camera, from.covariance, T_from_current,
-                                          inverse_covariance(T_current_from, motion_covariance));
   const Matrix6 A = derivative_of_advance(from, current);
+  const Matrix6 B = derivative_by_motion(current, T_current_from);
+  current.covariance = transform_covariance(A, from.covariance) + transform_covariance(B, motion_covariance);
   current.covariance_with_gravity = A.lazyProduct(from.covariance_with_gravity);
-  current.shifts =
-      A.lazyProduct(from.shifts) + derivative_by_motion(current, T_current_from).lazyProduct(motion_shifts);
+  current.shifts = A.lazyProduct(from.shifts) + B.lazyProduct(motion_shifts);
   return current;
 }
 

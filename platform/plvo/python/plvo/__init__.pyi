@@ -327,6 +327,9 @@ class Result:
     def restarted(self) -> bool:
         """Whether tracking goes on after a loss and the images did not observe the motion meanwhile. The covariance includes it."""
     @property
+    def disagreement(self) -> float:
+        """By how much points, lines and surfaces disagree about the motion: the factor by which `motion_covariance` is multiplied, 1 to 1000. Above 100 the message says so."""
+    @property
     def feature_step(self) -> int:
         """How far the budget has lowered the number of features: 0, all that fit, to 8, a third of them."""
 

@@ -93,7 +93,7 @@ std::string stats_header() {
   for (const char* kind : {"points", "lines"})
     for (const char* count : {"detected", "dropped", "with_depth", "matched", "inliers"})
       fmt::format_to(std::back_inserter(header), ",{}_{}", kind, count);
-  header += ",ransac_iterations,lm_iterations";
+  header += ",ransac_iterations,lm_iterations,disagreement";
   for (int i = 0; i < kStageCount; ++i)
     fmt::format_to(std::back_inserter(header), ",{}_ms", to_string(static_cast<Stage>(i)));
   return header + ",total_ms";
@@ -108,7 +108,8 @@ std::string stats_row(const FrameRecord& record) {
                                 format_stamp(result.reference_stamp_ns), result.mean_brightness);
   append_counts(row, result.points);
   append_counts(row, result.lines);
-  fmt::format_to(std::back_inserter(row), ",{},{}", result.ransac_iterations, result.lm_iterations);
+  fmt::format_to(std::back_inserter(row), ",{},{},{:.2f}", result.ransac_iterations, result.lm_iterations,
+                 result.disagreement);
   for (std::int64_t ns : result.stage_ns)
     fmt::format_to(std::back_inserter(row), ",{:.4f}", static_cast<double>(ns) * 1e-6);
   fmt::format_to(std::back_inserter(row), ",{:.4f}", static_cast<double>(record.cpu_ns) * 1e-6);
