@@ -29,6 +29,13 @@ constexpr double kShareOfUncontradicted = 0.2;
 // Smallest ratio of the eigenvalues of the information matrix (scaled to a unit diagonal). Below it the
 // inverse is dominated by rounding errors.
 constexpr double kMinEigenvalueRatio = 1e-10;
+// Scales of the thresholds in the rounds in which a kind of landmark decides alone. Where it was outvoted,
+// its matches contradict the motion by many standard deviations. The first round accepts twenty times the
+// distance.
+constexpr double kScalesAlone[] = {400, 20, 1};
+// A kind of landmark that decides alone is held at the common motion by 1/kFavoured of its information. In a
+// direction that the kind does not measure, the motion then stays where it is.
+constexpr double kFavoured = 1024;
 
 double largest_eigenvalue(const Matrix3& C) { return symmetric_eigen<3>(C).values.maxCoeff(); }
 
@@ -102,7 +109,7 @@ class ConsensusSolver {
         start_(start),
         solving_(solving),
         estimate_(estimate),
-        kernels_(MotionProblem::make_kernels(terms, config.robust ? RobustLoss::kHuber : RobustLoss::kNone)),
+        kernels_(MotionProblem::make_kernels(terms, loss())),
         ransac_(sets, terms, solving.references, config, kernels_, scratch, solving),
         shared_(start.shared) {}
 
@@ -112,8 +119,7 @@ class ConsensusSolver {
     StatusCode status = find_first();
     if (status != StatusCode::kOk) return status;
     Vector6 apart = Vector6::Zero();
-    status = look_beside(apart);
-    if (status != StatusCode::kOk) return status;
+    look_beside(apart);
     estimate_.explained = ransac_.covered();
     estimate_.evidence = estimate_.explained * ransac_.evidence();
     status = refine(lm);
@@ -174,8 +180,7 @@ class ConsensusSolver {
   // second contradicts the first, the first is taken.
   StatusCode find_first() {
     if (ransac_.let_proven_lead() && find_leading() == StatusCode::kOk && has_consensus()) {
-      const Se3 proven = T_, first = first_;
-      const double scale = first_scale_;
+      const Se3 proven = T_;
       const Matrix6 information = solving_.solver.hessian();
       ransac_.let_all_lead();
       if (find_leading() == StatusCode::kOk) {
@@ -183,8 +188,6 @@ class ConsensusSolver {
         if (apart.dot(information * apart) <= kMostPlausibleOfAll) return StatusCode::kOk;
       }
       (void)ransac_.let_proven_lead();
-      first_ = first;
-      first_scale_ = scale;
       if (approach_from(proven, kWiderThanRefined) == StatusCode::kOk && has_consensus())
         return StatusCode::kOk;
     }
@@ -196,35 +199,40 @@ class ConsensusSolver {
   // its consensus is too small, RANSAC finds the start.
   StatusCode find_leading() {
     if (start_.estimated) {
-      first_ = *start_.prediction;
-      first_scale_ = kWiderThanEstimated;
-      const StatusCode status = approach_from(first_, first_scale_);
+      const StatusCode status = approach_from(*start_.prediction, kWiderThanEstimated);
       if (status != StatusCode::kOk && status != StatusCode::kNoConsensus) return status;
       if (status == StatusCode::kOk && has_consensus()) return status;
     }
-    first_scale_ = kWiderThanRefined;
-    if (!ransac_.run(seed_, start_.prediction, first_, estimate_.ransac)) return StatusCode::kNoConsensus;
-    return approach_from(first_, first_scale_);
+    Se3 found;
+    if (!ransac_.run(seed_, start_.prediction, found, estimate_.ransac)) return StatusCode::kNoConsensus;
+    return approach_from(found, kWiderThanRefined);
   }
 
   // Takes another motion in the place of T_ if T_ explains too little or a prior contradicts it, and if the
   // other one is better. apart: difference between the two, if they explain about the same.
-  StatusCode look_beside(Vector6& apart) {
+  void look_beside(Vector6& apart) {
     const double covered = ransac_.covered();
     estimate_.contradicted = contradict(terms_, T_, solving_.references);
-    if (!start_.search_beside || !(covered < kWorldAtRest || estimate_.contradicted)) return StatusCode::kOk;
-    const Vector6 moved = boxminus(T_, first_);
+    if (!start_.search_beside || !(covered < kWorldAtRest || estimate_.contradicted)) return;
+    const Se3 first = T_;
+    const NuisanceParameters shared = shared_;
+    solving_.first_references = solving_.references;
+    ransac_.keep_consensus();
     Se3 other = T_;
     const bool found = ransac_.run_beside(seed_, start_.prediction, other, estimate_.ransac) &&
                        approach_from(other, kWiderThanRefined) == StatusCode::kOk && has_consensus();
     const double covered_by_other = found ? ransac_.covered() : 0;
-    if (!estimate_.contradicted && are_comparable(covered, covered_by_other))
-      apart = boxminus(T_, first_) - moved;
+    if (!estimate_.contradicted && are_comparable(covered, covered_by_other)) apart = boxminus(T_, first);
     const double least = estimate_.contradicted ? kShareOfUncontradicted : covered;
     estimate_.is_other = covered_by_other > least && ransac_.consensus_fixes_motion(seed_);
-    if (!estimate_.is_other) return approach_from(first_, first_scale_);
-    estimate_.contradicted = false;
-    return StatusCode::kOk;
+    if (estimate_.is_other) {
+      estimate_.contradicted = false;
+    } else {
+      T_ = first;
+      shared_ = shared;
+      solving_.references = solving_.first_references;
+      ransac_.restore_consensus();
+    }
   }
 
   // Writes the motion and its covariance, if the consensus determines them.
@@ -239,11 +247,56 @@ class ConsensusSolver {
       return StatusCode::kNotConverged;
     estimate_.contain(apart);
     // Not for a glance, whose motion is never reported.
-    if (start_.search_beside) estimate_.shifts = solving_.problem.shifts();
+    if (start_.search_beside) estimate_.shifts = shifts();
     estimate_.T_current_reference = T_;
     estimate_.motions = motions_to_current(T_, solving_.references);
     return StatusCode::kOk;
   }
+
+  // What each kind of landmark says: by how much the motion would differ if this kind decided, a
+  // ⊞-perturbation of T_. Only its matches with the base count, because the poses of the other references are
+  // themselves compromises of all kinds. The shifts are divided by the root of the number of kinds: Σ shift
+  // shiftᵀ is then the covariance of the mixture in which each kind is equally likely to be right.
+  [[gnu::noinline]] OfEachKind shifts() {
+    OfEachKind shifts = OfEachKind::Zero();
+    int kinds = 0;
+    ransac_.keep_consensus();
+    for (int k = 0; k < kLandmarkKinds; ++k) {
+      const auto kind = static_cast<LandmarkKind>(k);
+      const CostTerms terms = terms_.in_base(kind);
+      if (terms.size() == 0) continue;
+      ++kinds;
+      shifts.col(k) = shift_of(kind, terms);
+    }
+    ransac_.restore_consensus();
+    if (kinds > 0) shifts /= sqrt(static_cast<double>(kinds));
+    return shifts;
+  }
+
+  // Matches of a kind that contradict T_ may agree with each other. So the consensus of the kind is found
+  // anew, in rounds that lead away from T_, each with one Gauss–Newton step. Surfaces have one round: they
+  // are judged by a gate of their own (SurfaceConstraints).
+  Vector6 shift_of(LandmarkKind kind, const CostTerms& terms) {
+    const MotionProblem::Kernels kernels = MotionProblem::make_kernels(terms, loss());
+    Vector6 shift = Vector6::Zero();
+    Matrix6 H;
+    Vector6 g;
+    Cholesky<6> cholesky;
+    for (const double scale : kScalesAlone) {
+      if (kind == LandmarkKind::kSurfaces && scale > 1) continue;
+      const Se3 T = boxplus(T_, shift);
+      ransac_.judge(T, scale, kind);
+      solving_.problem.start(terms, solving_.references, shared_, kernels, T);
+      (void)solving_.problem.linearize(Vector6::Zero(), H, g);
+      const Matrix6 held = solving_.solver.hessian() / kFavoured;
+      if (!cholesky.factor(H + held)) return Vector6::Zero();
+      shift -= cholesky.solve(g + held.lazyProduct(shift));
+      if (!shift.allFinite()) return Vector6::Zero();
+    }
+    return shift;
+  }
+
+  RobustLoss loss() const { return config_.robust ? RobustLoss::kHuber : RobustLoss::kNone; }
 
   const CostTerms& terms_;
   const MotionReferences& references_;
@@ -256,8 +309,6 @@ class ConsensusSolver {
   Ransac ransac_;
   NuisanceParameters shared_;
   Se3 T_;
-  Se3 first_;  // start of the first motion, and the scale of its first thresholds
-  double first_scale_ = 0;
 };
 
 }  // namespace

@@ -40,10 +40,12 @@ struct MotionEstimate {
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
   // Σ⁻¹ J)⁻¹; m², m rad, rad². contain() adds the difference from another motion.
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
-  ReferenceInformation references;         // information of all terms, given the nuisance parameters
-  OfEachKind shifts = OfEachKind::Zero();  // what each kind says (MotionProblem::shifts)
-  NuisanceEstimate shared;                 // zero unless kOk
-  std::array<int, kMaxTerms> inliers{};    // the flags are in each term's inliers()
+  ReferenceInformation references;  // information of all terms, given the nuisance parameters
+  // By how much the motion would differ (⊞-perturbation) if one kind of landmark had decided, over the root
+  // of the number of kinds.
+  OfEachKind shifts = OfEachKind::Zero();
+  NuisanceEstimate shared;               // zero unless kOk
+  std::array<int, kMaxTerms> inliers{};  // the flags are in each term's inliers()
   RansacSummary ransac;
   LmSummary lm;
 

@@ -124,13 +124,10 @@ double MotionProblem::add_terms(std::size_t r, const Se3& T, bool& any) {
     const CostTerm& term = terms_[i];
     if (term.reference() != r) continue;
     any = true;
-    JointInformation& of_term = of_terms_[i];
-    if (!are_linearised_) {
-      of_term.set_zero();
-      cost += share_[i] * term.linearize(T, shared_, kernels_[i], of_term);
-    }
-    of_reference_.H += share_[i] * of_term.H;
-    of_reference_.g += share_[i] * of_term.g;
+    of_term_.set_zero();
+    cost += share_[i] * term.linearize(T, shared_, kernels_[i], of_term_);
+    of_reference_.H += share_[i] * of_term_.H;
+    of_reference_.g += share_[i] * of_term_.g;
   }
   return cost;
 }
@@ -201,40 +198,6 @@ double MotionProblem::eliminate_pose(std::size_t r, const Matrix6& L) {
   sum_.H.block<6, 6>(0, 0) -= symmetric<6>(eliminated);
   sum_.g.head<6>() -= coupling.lazyProduct(step);
   return cost - 0.5 * g.dot(step);
-}
-
-// Multiplies the weights of a kind. Returns whether there are such terms.
-bool MotionProblem::favour(LandmarkKind kind, double factor) {
-  bool any = false;
-  for (std::size_t i = 0; i < terms_.size(); ++i) {
-    if (terms_[i].kind() != kind) continue;
-    share_[i] *= factor;
-    any = true;
-  }
-  return any;
-}
-
-[[gnu::noinline]] OfEachKind MotionProblem::shifts() {
-  OfEachKind shifts = OfEachKind::Zero();
-  Matrix6 H;
-  Vector6 g;
-  (void)linearize(Vector6::Zero(), H, g);
-  are_linearised_ = true;
-  int kinds = 0;
-  for (int k = 0; k < kLandmarkKinds; ++k) {
-    const auto kind = static_cast<LandmarkKind>(k);
-    if (!favour(kind, kFavoured)) continue;
-    ++kinds;
-    (void)linearize(Vector6::Zero(), H, g);
-    (void)favour(kind, 1 / kFavoured);
-    Cholesky<6> cholesky;
-    if (!cholesky.factor(H)) continue;
-    const Vector6 shift = -cholesky.solve(g);
-    if (shift.allFinite()) shifts.col(k) = shift;
-  }
-  are_linearised_ = false;
-  if (kinds > 0) shifts /= sqrt(static_cast<double>(kinds));
-  return shifts;
 }
 
 NuisanceEstimate MotionProblem::shared(const Matrix6& covariance) const {

@@ -31,6 +31,13 @@ class CostTerms {
     for (ConstraintSet* set : sets) add(set);
     for (CostTerm* term : others) add(term);
   }
+  // Those that measure this kind of landmark in the base (MotionReference).
+  CostTerms in_base(LandmarkKind kind) const {
+    CostTerms terms;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (terms_[i]->kind() == kind && terms_[i]->reference() == 0) terms.add(terms_[i]);
+    return terms;
+  }
   std::size_t size() const { return count_; }
   CostTerm& operator[](std::size_t i) const { return *terms_[i]; }
   bool fix_motion() const {
@@ -101,13 +108,6 @@ class MotionProblem {
   const MotionReferences& poses() const { return references_; }
   // The nuisance parameters at the accepted state, given the covariance of the motion.
   NuisanceEstimate shared(const Matrix6& covariance) const;
-  // What each kind of landmark says: by how much the optimum shifts (a ⊞-perturbation of T_current_reference)
-  // if the terms of this kind weigh kFavoured times as much, in one Gauss–Newton step with the robust weights
-  // of the present state. In a direction that the kind does not measure, the others decide, and the shift is
-  // zero. The shifts are divided by the root of the number of kinds: Σ shift shiftᵀ is then the covariance of
-  // the mixture in which each kind is equally likely to be right. Overwrites the candidate, so linearize()
-  // must follow before accept().
-  OfEachKind shifts();
   // The information of all terms at the accepted state, given the nuisance parameters.
   const ReferenceInformation& references() const { return of_references_; }
 
@@ -116,11 +116,6 @@ class MotionProblem {
   using SharedGain = Matrix<NuisanceParameters::kCount, 6>;
   using PoseGain = Matrix<6, NuisanceParameters::kCount>;
 
-  // The favoured kind has 1/32 of its standard deviations. A power of two, so that division undoes the
-  // multiplication bit by bit.
-  static constexpr double kFavoured = 1024;
-
-  bool favour(LandmarkKind kind, double factor);
   double add_reference(std::size_t r, const Se3& T);
   double add_terms(std::size_t r, const Se3& T, bool& any);
   double bring_to_base(std::size_t r, const Se3& T);
@@ -143,16 +138,15 @@ class MotionProblem {
   SharedMatrix inverse_, candidate_inverse_;
   SharedGain gain_, candidate_gain_;
   ReferenceInformation of_references_, candidate_of_references_;
-  // Sums of a linearisation: over all references, over one reference, over each term without its share.
-  JointInformation sum_, of_reference_;
-  std::array<JointInformation, kMaxTerms> of_terms_;
-  bool are_linearised_ = false;  // the terms, at the candidate: only their shares have changed since
+  // Sums of a linearisation: over all references, over one reference, over one term without its share.
+  JointInformation sum_, of_reference_, of_term_;
 };
 
 // The solver that RANSAC's refinements and the final estimate share, and the current estimate of the
 // references.
 struct MotionSolver {
   MotionReferences references;
+  MotionReferences first_references;  // as estimated with the first motion, while another one is searched for
   MotionProblem problem;
   LevenbergMarquardt<6> solver;
   // Solves, then takes the step that the solver would try next without evaluating its cost.

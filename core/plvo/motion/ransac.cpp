@@ -55,7 +55,7 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     threshold_[s] = chi_square_quantile(set.dof(), kInlierProbability);
     for (std::size_t i = 0; i < set.size() && n < scratch.size(); ++i)
       if (set.usable(i))
-        scratch[n++] = {static_cast<std::uint16_t>(s & 31), 1, 0, static_cast<std::uint16_t>(i), 0};
+        scratch[n++] = {static_cast<std::uint16_t>(s & 15), 0, 1, 0, static_cast<std::uint16_t>(i), 0};
   }
   candidates_ = leading_ = judged_ = scratch.first(n);
   weigh();
@@ -174,10 +174,7 @@ bool Ransac::is_promising(const Se3& T, std::size_t n) const {
   int agreeing = 0;
   for (std::size_t k = 0; k < kTested; ++k) {
     const RansacCandidate& candidate = candidates_[k * n / kTested];
-    const ConstraintSet& set = *sets_[candidate.set];
-    const double threshold = kFreshScale * threshold_[candidate.set];
-    if (set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold)
-      ++agreeing;
+    if (agrees(candidate, motions, kFreshScale)) ++agreeing;
   }
   return agreeing >= kLeastPromising;
 }
@@ -304,21 +301,43 @@ void Ransac::refine(Se3& T) {
   inliers_ = kept_inliers;
 }
 
+// Whether a match passes the χ² test with its threshold scaled.
+bool Ransac::agrees(const RansacCandidate& candidate, const MotionsToCurrent& motions, double scale) const {
+  const ConstraintSet& set = *sets_[candidate.set];
+  const double threshold = scale * threshold_[candidate.set];
+  return set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold;
+}
+
 void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   inliers_ = 0;
   judged_ = scale > 1 || stride > 1 ? leading_ : candidates_;
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     const RansacCandidate& candidate = candidates_[k];
-    ConstraintSet& set = *sets_[candidate.set];
-    const double threshold = scale * threshold_[candidate.set];
     const std::uint8_t flag =
-        k < judged_.size() && k % stride == 0 &&
-                set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold
-            ? 1
-            : 0;
-    set.inliers()[candidate.index] = flag;
+        k < judged_.size() && k % stride == 0 && agrees(candidate, motions, scale) ? 1 : 0;
+    sets_[candidate.set]->inliers()[candidate.index] = flag;
     inliers_ += flag;
+  }
+}
+
+[[gnu::noinline]] void Ransac::judge(const Se3& T, double scale, LandmarkKind kind) {
+  const MotionsToCurrent motions = motions_to_current(T, references_);
+  for (const RansacCandidate& candidate : candidates_)
+    if (ConstraintSet& set = *sets_[candidate.set]; set.kind() == kind)
+      set.inliers()[candidate.index] = agrees(candidate, motions, scale) ? 1 : 0;
+}
+
+void Ransac::keep_consensus() {
+  for (RansacCandidate& candidate : candidates_)
+    candidate.kept = sets_[candidate.set]->inliers()[candidate.index] & 1;
+}
+
+void Ransac::restore_consensus() {
+  inliers_ = 0;
+  for (const RansacCandidate& candidate : candidates_) {
+    sets_[candidate.set]->inliers()[candidate.index] = candidate.kept;
+    inliers_ += candidate.kept;
   }
 }
 

@@ -38,13 +38,14 @@ struct RansacSummary {
 
 // A match that may be an inlier.
 struct RansacCandidate {
-  std::uint16_t set : 5 = 0;    // its constraint set
+  std::uint16_t set : 4 = 0;    // its constraint set
+  std::uint16_t kept : 1 = 0;   // its flag, as keep_consensus() found it
   std::uint16_t leads : 1 = 1;  // takes part in the search, not in the last test alone
   std::uint16_t cell : 10 = 0;  // its cell of the image
   std::uint16_t index = 0;
   float evidence = 0;
 };
-static_assert(ImageCells::kCount == 1 << 10 && kMaxConstraintSets <= 1 << 5);
+static_assert(ImageCells::kCount == 1 << 10 && kMaxConstraintSets <= 1 << 4);
 
 constexpr std::span<RansacCandidate> take_ransac_scratch(Arena& memory, std::size_t max_matches) {
   return memory.take<RansacCandidate>("motion: candidates", max_matches);
@@ -77,6 +78,11 @@ class Ransac {
   // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`. With a
   // scale above 1, the test leads to a motion: only matches that lead can pass.
   void judge(const Se3& T, double scale) { judge(T, scale, 1); }
+  // The same for the matches of one kind, whether they lead or not. The other flags stay.
+  void judge(const Se3& T, double scale, LandmarkKind kind);
+  // Keeps the flags of the matches, and writes them again.
+  void keep_consensus();
+  void restore_consensus();
   // Clears the flags of the inliers that are isolated among outliers (neighbourhoods.hpp), unless most are.
   void leave_isolated_out();
   int inliers() const { return inliers_; }
@@ -114,6 +120,7 @@ class Ransac {
   void refine(Se3& T);
   // Judges every stride-th match and clears the flags of the others.
   void judge(const Se3& T, double scale, std::size_t stride);
+  bool agrees(const RansacCandidate& candidate, const MotionsToCurrent& motions, double scale) const;
   int iterations_needed() const;
 
   std::span<ConstraintSet* const> sets_;

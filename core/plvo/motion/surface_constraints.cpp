@@ -64,8 +64,9 @@ struct ErrorColumns {
   }
 }
 
-// The same without the motion's zeros, two columns at once. Entries above the diagonal may be wrong.
-void add(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
+// The same without the motion's zeros, two columns at once. Entries above the diagonal may be wrong. first:
+// the other columns before it are zero.
+void add(const ErrorColumns& A, int first, const Matrix3& M, SurfaceForm& form) {
   if constexpr (kSizeOptimised) return add_each(A, M, form);
   static_assert(kOthers % 2 == 0);
   for (int i = 0; i < 3; ++i)
@@ -75,14 +76,14 @@ void add(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
         for (int l = 0; l < 4; l += 2) add_to(&form.Q[4 * i + j][4 * k + l], scaled * pair_at(A.p + l));
       }
   const auto& others = A.others;
-  for (int a = 0; a < kOthers; ++a) {
+  for (int a = first; a < kOthers; ++a) {
     double* row = form.Q[kMotion + a];
     double Mv[3];
     for (int i = 0; i < 3; ++i) {
       Mv[i] = M(i, 0) * others(0, a) + M(i, 1) * others(1, a) + M(i, 2) * others(2, a);
       for (int l = 0; l < 4; l += 2) add_to(row + 4 * i + l, Mv[i] * pair_at(A.p + l));
     }
-    for (int b = 0; b <= a; b += 2)
+    for (int b = first & ~1; b <= a; b += 2)
       add_to(row + kMotion + b, Mv[0] * pair_at(&others(0, b)) + Mv[1] * pair_at(&others(1, b)) +
                                     Mv[2] * pair_at(&others(2, b)));
   }
@@ -188,7 +189,7 @@ void SurfaceConstraints::begin(const Se3& T, const NuisanceParameters& shared, c
     A.others.col(kOthers - 1) = offset;
     for (int k = 0; k < 3; ++k) A.p[k] = match.p_reference[k];
     A.p[3] = 1;
-    add(A, M, *form_);
+    add(A, shared.any() ? 0 : kShared, M, *form_);
   }
   mirror(*form_);
 }

@@ -12,7 +12,7 @@ struct PoseWithCovariance {
   Se3 T_world_camera;
   Matrix6 covariance = Matrix6::Zero();               // of the ⊞-perturbation
   Matrix6 covariance_with_gravity = Matrix6::Zero();  // rows as in covariance; columns (ε, β)
-  // By how much the pose would differ if one kind of landmark had decided (MotionProblem::shifts), a
+  // By how much the pose would differ if one kind of landmark had decided (MotionEstimate::shifts), a
   // ⊞-perturbation for each kind. What makes a kind disagree is the same from frame to frame. So these add up
   // along the way as they are, where the noise in `covariance` adds up by its squares.
   OfEachKind shifts = OfEachKind::Zero();
