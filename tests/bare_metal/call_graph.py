@@ -17,7 +17,7 @@ INDIRECT = [
     (re.compile(r"LevenbergMarquardt.*@lines"), re.compile(r"LmAnyProblem.*EndDepths.*_FUN")),
     (re.compile(r"LevenbergMarquardt"), re.compile(r"LmAnyProblem.*MotionProblem.*_FUN")),
     (re.compile(r"plvo10contradict"), re.compile(r"11contradicts")),
-    (re.compile(r"Ransac|MotionProblem|estimate_motion|5solveESt4span|5count|8estimate"), re.compile(r"_ZNK?4plvo\d+[A-Z]\w*Constraints?S?\d")),
+    (re.compile(r"Ransac|MotionProblem|estimate_motion|5solveESt4span|5count|8estimate|11find_shifts|8shift_of"), re.compile(r"_ZNK?4plvo\d+[A-Z]\w*Constraints?S?\d")),
 ]
 
 # (caller, callee, mark): what it calls from there is not what it calls from elsewhere, so it counts as a function of its own.

@@ -3,6 +3,7 @@
 
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/symmetric_eigen.hpp"
+#include "plvo/motion/prior_constraint.hpp"
 
 namespace plvo {
 namespace {
@@ -30,9 +31,9 @@ constexpr double kShareOfUncontradicted = 0.2;
 // inverse is dominated by rounding errors.
 constexpr double kMinEigenvalueRatio = 1e-10;
 // Scales of the thresholds in the rounds in which a kind of landmark decides alone. Where it was outvoted,
-// its matches contradict the motion by many standard deviations. The first round accepts twenty times the
-// distance.
-constexpr double kScalesAlone[] = {400, 20, 1};
+// its matches contradict the motion. The first round accepts six times the distance: what is farther away
+// belongs to another object, and is no other opinion about this one.
+constexpr double kScalesAlone[] = {36, 9, 1};
 // A kind of landmark that decides alone is held at the common motion by 1/kFavoured of its information. In a
 // direction that the kind does not measure, the motion then stays where it is.
 constexpr double kFavoured = 1024;
@@ -245,9 +246,9 @@ class ConsensusSolver {
     // kStalled counts as converged: no step lowers the cost any further.
     if (!converged(estimate_.lm.status) && estimate_.lm.status != LmStatus::kStalled)
       return StatusCode::kNotConverged;
-    estimate_.contain(apart);
     // Not for a glance, whose motion is never reported.
-    if (start_.search_beside) estimate_.shifts = shifts();
+    if (start_.search_beside) find_shifts();
+    estimate_.contain(apart);
     estimate_.T_current_reference = T_;
     estimate_.motions = motions_to_current(T_, solving_.references);
     return StatusCode::kOk;
@@ -257,43 +258,36 @@ class ConsensusSolver {
   // ⊞-perturbation of T_. Only its matches with the base count, because the poses of the other references are
   // themselves compromises of all kinds. The shifts are divided by the root of the number of kinds: Σ shift
   // shiftᵀ is then the covariance of the mixture in which each kind is equally likely to be right.
-  [[gnu::noinline]] OfEachKind shifts() {
-    OfEachKind shifts = OfEachKind::Zero();
+  [[gnu::noinline]] void find_shifts() {
     int kinds = 0;
     ransac_.keep_consensus();
-    for (int k = 0; k < kLandmarkKinds; ++k) {
-      const auto kind = static_cast<LandmarkKind>(k);
-      const CostTerms terms = terms_.in_base(kind);
-      if (terms.size() == 0) continue;
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+      CostTerm& term = terms_[i];
+      if (term.reference() != 0 || term.kind() == LandmarkKind::kNone) continue;
       ++kinds;
-      shifts.col(k) = shift_of(kind, terms);
+      estimate_.shifts.col(static_cast<int>(term.kind())) = shift_of(term, kernels_[i]);
     }
     ransac_.restore_consensus();
-    if (kinds > 0) shifts /= sqrt(static_cast<double>(kinds));
-    return shifts;
+    if (kinds > 0) estimate_.shifts /= sqrt(static_cast<double>(kinds));
   }
 
   // Matches of a kind that contradict T_ may agree with each other. So the consensus of the kind is found
   // anew, in rounds that lead away from T_, each with one Gauss–Newton step. Surfaces have one round: they
   // are judged by a gate of their own (SurfaceConstraints).
-  Vector6 shift_of(LandmarkKind kind, const CostTerms& terms) {
-    const MotionProblem::Kernels kernels = MotionProblem::make_kernels(terms, loss());
-    Vector6 shift = Vector6::Zero();
-    Matrix6 H;
-    Vector6 g;
-    Cholesky<6> cholesky;
+  Vector6 shift_of(CostTerm& term, const RobustKernel& kernel) {
+    PriorConstraint held(T_, kFavoured * estimate_.C_H);
+    CostTerm* const alone[] = {&term, &held};
+    MotionProblem::Kernels kernels;
+    kernels[0] = kernel;
+    Se3 T = T_;
     for (const double scale : kScalesAlone) {
-      if (kind == LandmarkKind::kSurfaces && scale > 1) continue;
-      const Se3 T = boxplus(T_, shift);
-      ransac_.judge(T, scale, kind);
-      solving_.problem.start(terms, solving_.references, shared_, kernels, T);
-      (void)solving_.problem.linearize(Vector6::Zero(), H, g);
-      const Matrix6 held = solving_.solver.hessian() / kFavoured;
-      if (!cholesky.factor(H + held)) return Vector6::Zero();
-      shift -= cholesky.solve(g + held.lazyProduct(shift));
-      if (!shift.allFinite()) return Vector6::Zero();
+      if (term.kind() == LandmarkKind::kSurfaces && scale > 1) continue;
+      ransac_.judge(T, scale, term);
+      solving_.problem.start(CostTerms({}, alone), solving_.references, shared_, kernels, T);
+      (void)solving_.solve(LmOptions::one_step());
+      T = solving_.problem.T_current_reference();
     }
-    return shift;
+    return boxminus(T, T_);
   }
 
   RobustLoss loss() const { return config_.robust ? RobustLoss::kHuber : RobustLoss::kNone; }

@@ -67,20 +67,22 @@ struct MotionStart {
   const Se3* prediction;
   NuisanceParameters shared;
   bool estimated;
-  bool search_beside = true;  // for another motion, if this one explains too little
+  // For another motion, if this one explains too little, and for what each kind says (shifts).
+  bool search_beside = true;
   // The matches were registered near the prediction. Outliers are then mostly parts of an object that moves,
   // and inliers among them are left out (neighbourhoods.hpp). Otherwise outliers are mostly wrong matches.
   bool registered = false;
 };
 
 // Fills `estimate`. sets: at most kMaxConstraintSets, in a fixed order. others: terms that RANSAC does not
-// judge, such as a prior. The inlier flags of all are written (all zero unless kOk). references: the frames
-// that the sets match with; the result is the motion from the base, reference 0. start.prediction, if any, is
-// the first hypothesis, and it decides between rotations that perpendicular lines cannot distinguish. The
-// result is bitwise reproducible. Scratch memory (take_ransac_scratch, take_solver) is taken from the arena
-// and returned; if the arena is too small, the status is kOutOfMemory. The status is also kDegenerate if a
-// standard deviation exceeds its bound in MotionConfig, if the information matrix (scaled to a unit diagonal)
-// has an eigenvalue ratio below 1e-10, or if every minimal set drawn from the consensus is degenerate: all
+// judge, such as a prior. The inlier flags of all are written (all zero unless kOk); what else the terms
+// hold depends on the last motion that was tried. references: the frames that the sets match with; the
+// result is the motion from the base, reference 0. start.prediction, if any, is the first hypothesis, and
+// it decides between rotations that perpendicular lines cannot distinguish. The result is bitwise
+// reproducible. Scratch memory (take_ransac_scratch, take_solver) is taken from the arena and returned; if
+// the arena is too small, the status is kOutOfMemory. The status is also kDegenerate if a standard
+// deviation exceeds its bound in MotionConfig, if the information matrix (scaled to a unit diagonal) has
+// an eigenvalue ratio below 1e-10, or if every minimal set drawn from the consensus is degenerate: all
 // lines parallel, all points on a line, …
 void estimate_motion(std::span<ConstraintSet* const> sets, std::span<CostTerm* const> others,
                      const MotionReferences& references, const MotionConfig& config, const LmOptions& lm,

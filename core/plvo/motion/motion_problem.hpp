@@ -31,13 +31,6 @@ class CostTerms {
     for (ConstraintSet* set : sets) add(set);
     for (CostTerm* term : others) add(term);
   }
-  // Those that measure this kind of landmark in the base (MotionReference).
-  CostTerms in_base(LandmarkKind kind) const {
-    CostTerms terms;
-    for (std::size_t i = 0; i < count_; ++i)
-      if (terms_[i]->kind() == kind && terms_[i]->reference() == 0) terms.add(terms_[i]);
-    return terms;
-  }
   std::size_t size() const { return count_; }
   CostTerm& operator[](std::size_t i) const { return *terms_[i]; }
   bool fix_motion() const {

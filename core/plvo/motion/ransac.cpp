@@ -321,11 +321,11 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   }
 }
 
-[[gnu::noinline]] void Ransac::judge(const Se3& T, double scale, LandmarkKind kind) {
+[[gnu::noinline]] void Ransac::judge(const Se3& T, double scale, const CostTerm& set) {
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (const RansacCandidate& candidate : candidates_)
-    if (ConstraintSet& set = *sets_[candidate.set]; set.kind() == kind)
-      set.inliers()[candidate.index] = agrees(candidate, motions, scale) ? 1 : 0;
+    if (ConstraintSet* judged = sets_[candidate.set]; judged == &set)
+      judged->inliers()[candidate.index] = agrees(candidate, motions, scale) ? 1 : 0;
 }
 
 void Ransac::keep_consensus() {

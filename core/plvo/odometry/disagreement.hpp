@@ -6,9 +6,9 @@
 // What makes a kind disagree is the same from frame to frame. So the shift S_k that it demands
 // (PoseWithCovariance::shifts) is added up over the last half second, and so is the noise N of the motions:
 //
-//   S_k ← κ T S_k + ΔS_k,   N ← κ² T N Tᵀ + C,   κ = τ / (τ + Δt),
+//   S_k ← κ A S_k + ΔS_k,   N ← κ² A N Aᵀ + B C Bᵀ,   κ = τ / (τ + Δt),
 //
-// T moves an error of the last pose to the present one. If noise alone shifted the K kinds, their squared
+// with the derivatives A and B of advance(). If noise alone shifted the K kinds, their squared
 // distances K S_kᵀ N⁻¹ S_k (a shift is divided by √K) would be 6 K in sum. What is beyond that, divided by
 // six, is the variance of the compromise relative to the noise, as in the method of moments of DerSimonian
 // and Laird ("Meta-analysis in clinical trials", Controlled Clinical Trials 7, 1986):
@@ -25,15 +25,14 @@ namespace plvo {
 
 class Disagreement {
  public:
-  // Notes a frame that was tracked, elapsed_s after the last one. pose: advance() of an earlier pose by
-  // T_current_from, whose ⊞-perturbation has the covariance C.
+  // Notes a frame that was tracked, elapsed_s after the last one, in the same world. pose: advance() of an
+  // earlier pose by T_current_from, whose ⊞-perturbation has the covariance C.
   void note(const PoseWithCovariance& last, const PoseWithCovariance& pose, const Se3& T_current_from,
             const Matrix6& C, double elapsed_s);
   // The factor, at least 1.
   double inflation() const { return inflation_; }
 
  private:
-  // In the axes of the last camera, so that they do not depend on the world.
   OfEachKind shifts_ = OfEachKind::Zero();
   Matrix6 noise_ = Matrix6::Zero();
   double inflation_ = 1;

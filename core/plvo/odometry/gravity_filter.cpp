@@ -79,14 +79,14 @@ void GravityFilter::read(const GravityPrior& reading, PoseWithCovariance& from, 
   Matrix<2, 6> J_gravity;
   J_gravity.block<2, 3>(0, 0) = U.transpose().lazyProduct(R_camera_world);
   J_gravity.block<2, 3>(0, 3) = U.transpose();
-  // Covariances of each error with the residual.
-  const Matrix<6, 2> P_from = from_omega.lazyProduct(J_omega.transpose()) +
-                              from.covariance_with_gravity.lazyProduct(J_gravity.transpose());
-  const Matrix<6, 2> P_current = current_omega.lazyProduct(J_omega.transpose()) +
-                                 current.covariance_with_gravity.lazyProduct(J_gravity.transpose());
+  // Covariance of an error with the residual, from those with the errors of the orientation and of gravity.
+  const auto with_residual = [&](const Matrix<6, 3>& omega, const Matrix6& gravity) -> Matrix<6, 2> {
+    return omega.lazyProduct(J_omega.transpose()) + gravity.lazyProduct(J_gravity.transpose());
+  };
+  const Matrix<6, 2> P_from = with_residual(from_omega, from.covariance_with_gravity);
+  const Matrix<6, 2> P_current = with_residual(current_omega, current.covariance_with_gravity);
   const Matrix<6, 3> gravity_omega = current.covariance_with_gravity.block<3, 6>(3, 0).transpose();
-  const Matrix<6, 2> P_gravity =
-      gravity_omega.lazyProduct(J_omega.transpose()) + covariance_.lazyProduct(J_gravity.transpose());
+  const Matrix<6, 2> P_gravity = with_residual(gravity_omega, covariance_);
   Matrix2 noise = U.transpose().lazyProduct(reading.covariance).eval().lazyProduct(U);
   for (int i = 0; i < 2; ++i) noise(i, i) = std::max(noise(i, i), kLeastReadingVariance);
   const Matrix2 S = symmetric<2>(J_omega.lazyProduct(P_current.block<3, 2>(3, 0)) +

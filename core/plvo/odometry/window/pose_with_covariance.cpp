@@ -4,17 +4,13 @@
 #include "plvo/math/covariance.hpp"
 
 namespace plvo {
-namespace {
 
-// ∂δ_current / ∂ξ of advance(), with T_current_from ⊞ ξ.
 Matrix6 derivative_by_motion(const PoseWithCovariance& current, const Se3& T_current_from) {
   const Matrix3& R = current.T_world_camera.R;
   Matrix6 B = rotation_of_both(-R);
   B.block<3, 3>(0, 3) = -R * skew(T_current_from.t);
   return B;
 }
-
-}  // namespace
 
 Matrix6 derivative_of_advance(const PoseWithCovariance& from, const PoseWithCovariance& current) {
   Matrix6 A = Matrix6::Identity();

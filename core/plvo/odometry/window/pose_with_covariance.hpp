@@ -28,6 +28,8 @@ PoseWithCovariance advance(const PoseWithCovariance& from, const Se3& T_current_
 
 // ∂δ_current / ∂δ_from of advance().
 Matrix6 derivative_of_advance(const PoseWithCovariance& from, const PoseWithCovariance& current);
+// ∂δ_current / ∂ξ of advance(), with T_current_from ⊞ ξ.
+Matrix6 derivative_by_motion(const PoseWithCovariance& current, const Se3& T_current_from);
 
 // Brings the covariance within the bound and makes it valid again (covariance.hpp); a valid one stays the
 // same bit by bit. Returns false where the pose or the covariance is not finite.
