@@ -32,7 +32,7 @@ Vector6 shift_by_weight(Bench& bench, std::size_t favoured, const MotionEstimate
   ConstraintSet& set = *bench.sets[favoured];
   set.set_reference(0, 0, 1024);
   Se3 T = estimate.T_current_reference;
-  for (const double scale : {36, 9, 1}) {
+  for (const double scale : {400, 20, 1}) {
     judge(set, T, scale);
     T = test::settle(CostTerms(bench.sets), MotionReferences{}, RobustLoss::kHuber, T).T;
   }
@@ -87,7 +87,7 @@ TEST(KindsShift, LeadsFromOneMotionToTheOther) {
 // The points decide, and most lines are outliers.
 TEST(KindsShift, HearsAKindThatIsOutvoted) {
   Gaussian gaussian(48);
-  const Vector6 apart(0.02, 0, 0, 0, 0, 0);
+  const Vector6 apart(0.04, 0, 0, 0, 0, 0);
   for (int trial = 0; trial < 20; ++trial) {
     SimulatedPair pair = test::simulate(gaussian, 3 * kPoints, 0);
     pair.truth = boxplus(pair.truth, apart);

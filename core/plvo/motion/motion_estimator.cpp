@@ -31,9 +31,9 @@ constexpr double kShareOfUncontradicted = 0.2;
 // inverse is dominated by rounding errors.
 constexpr double kMinEigenvalueRatio = 1e-10;
 // Scales of the thresholds in the rounds in which a kind of landmark decides alone. Where it was outvoted,
-// its matches contradict the motion. The first round accepts six times the distance: what is farther away
-// belongs to another object, and is no other opinion about this one.
-constexpr double kScalesAlone[] = {36, 9, 1};
+// its matches contradict the motion by many standard deviations. The first round accepts twenty times the
+// distance.
+constexpr double kScalesAlone[] = {400, 20, 1};
 // A kind of landmark that decides alone is held at the common motion by 1/kFavoured of its information. In a
 // direction that the kind does not measure, the motion then stays where it is.
 constexpr double kFavoured = 1024;

@@ -324,7 +324,7 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
 [[gnu::noinline]] void Ransac::judge(const Se3& T, double scale, const CostTerm& set) {
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (const RansacCandidate& candidate : candidates_)
-    if (ConstraintSet* judged = sets_[candidate.set]; judged == &set)
+    if (ConstraintSet* judged = sets_[candidate.set]; judged == &set && candidate.evidence > 0)
       judged->inliers()[candidate.index] = agrees(candidate, motions, scale) ? 1 : 0;
 }
 

@@ -78,7 +78,7 @@ class Ransac {
   // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`. With a
   // scale above 1, the test leads to a motion: only matches that lead can pass.
   void judge(const Se3& T, double scale) { judge(T, scale, 1); }
-  // The same for the matches of one set, whether they lead or not. The other flags stay.
+  // The same for the matches of one set that have evidence, whether they lead or not. The other flags stay.
   void judge(const Se3& T, double scale, const CostTerm& set);
   // Keeps the flags of the matches, and writes them again.
   void keep_consensus();
