@@ -138,6 +138,9 @@ void expect_to_go_on_by_the_prior(const Config& config, double most_left, double
     EXPECT_LT((again.T_world_camera.t - truth(14).t).norm(), 0.02);
     EXPECT_LT(worst(again.pose_covariance, 0), (with_wheels ? most_left_with_wheels : most_left) * variance_m)
         << "the keyframe is found again";
+    if (!with_wheels) {
+      EXPECT_LT(worst(again.motion_covariance, 0), 0.01 * variance_m);
+    }
   }
 }
 

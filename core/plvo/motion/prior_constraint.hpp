@@ -3,7 +3,8 @@
 // translation before rotation; it adds ½ ρ(rᵀ C⁻¹ r) to the cost (21). RANSAC does not judge it, because a
 // hypothesis is arbitrary in directions that vision does not determine. If the prior contradicts the images,
 // Huber's loss bounds its influence. If the images show two motions and it contradicts one of them, the other
-// is taken as the camera's.
+// is taken as the camera's. The same term holds a kind of landmark that decides alone near the common motion
+// (ConsensusSolver in motion_estimator.cpp).
 #pragma once
 
 #include "plvo/math/cholesky.hpp"
