@@ -58,10 +58,11 @@ class Pairs {
 
   // The motion since the previous frame.
   Fusion next(const RgbdFrame& frame) {
-    const NoiseScales noise = config_.noise.initial;
+    const NoiseScales noise = initial_scales(config_.noise);
     StageTimes times{};
     CarriedCells carried;
-    const StageContext context{camera_, config_, noise, arena_, times, carried};
+    const ParallaxCheck parallax;
+    const StageContext context{camera_, config_, noise, arena_, times, carried, parallax};
     FeatureExtraction& extraction = modules_.extraction;
     const DepthSampler depth = extraction.depth_sampler(frame, config_.depth_noise);
     PredictedMotion predicted;

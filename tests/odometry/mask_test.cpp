@@ -246,10 +246,11 @@ TEST(Mask, NoSurfaceSampleLiesInMaskedPixels) {
   const std::vector<std::uint8_t> used = used_pixels();
   extraction.init(camera, {used.data(), kWide, kHigh, kWide});
   const Config config;
-  const NoiseScales noise = config.noise.initial;
+  const NoiseScales noise = initial_scales(config.noise);
   StageTimes times{};
   CarriedCells carried;
-  const StageContext context{camera, config, noise, arena, times, carried};
+  const ParallaxCheck parallax;
+  const StageContext context{camera, config, noise, arena, times, carried, parallax};
   const MaskedPixels masked(camera);
   std::size_t samples = 0;
   for (int i = 0; i < 4; ++i) {

@@ -96,10 +96,12 @@ Vector2 undistort_equidistant(const Distortion& lens, const Vector2& target) {
   return sin(theta) / (cos(theta) * distance) * target;
 }
 
-Status folds_at(double theta, const char* what, const char* degrees_from_the_axis) {
+Status folds_at(double theta, const char* what, const char* coefficients) {
   return Status(StatusCode::kInvalidArgument, what)
       .append(static_cast<std::ptrdiff_t>(theta * (180 / kPi)))
-      .append(degrees_from_the_axis);
+      .append(" degrees from the axis; check ")
+      .append(coefficients)
+      .append(" and their order, or calibrate again with the target in the image's corners, too");
 }
 
 constexpr int kRadialSteps = 512;     // steps along the radius, less than 1 px each
@@ -113,10 +115,7 @@ Status check_rational(const Distortion& lens, double radius) {
     const double s = r * r;
     const double imaged = r * cubic(1, lens.k1, lens.k2, lens.k3, s) / cubic(1, lens.k4, lens.k5, lens.k6, s);
     if (!(imaged - before >= kLeastSlope * radius / kRadialSteps))
-      return folds_at(
-          atan2(r, 1), "the rational distortion folds the image ",
-          " degrees from the axis; check k1 k2 p1 p2 k3 k4 k5 k6 and their order, or calibrate again "
-          "with the target in the image's corners, too");
+      return folds_at(atan2(r, 1), "the rational distortion folds the image ", "k1 k2 p1 p2 k3 k4 k5 k6");
     before = imaged;
   }
   return {};
@@ -127,10 +126,7 @@ Status check_equidistant(const Distortion& lens, double radius) {
   for (int i = 1; i <= kRadialSteps; ++i) {
     const double theta = widest * i / kRadialSteps;
     if (!(fisheye_slope(lens, theta) >= kLeastSlope))
-      return folds_at(
-          theta, "the equidistant distortion folds the image ",
-          " degrees from the axis; check k1 k2 k3 k4 and their order, or calibrate again with the "
-          "target in the image's corners, too");
+      return folds_at(theta, "the equidistant distortion folds the image ", "k1 k2 k3 k4");
   }
   return {};
 }

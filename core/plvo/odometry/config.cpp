@@ -74,13 +74,6 @@ void check(RangeCheck& ranges, const PointConfig& points) {
 }
 
 void check(RangeCheck& ranges, const NoiseConfig& noise) {
-  ranges.group("noise.initial.");
-  ranges.require("image", noise.initial.image, 0.01, 100.0);
-  ranges.require("depth", noise.initial.depth, 0.01, 100.0);
-  ranges.require("lines", noise.initial.lines, 0.01, 100.0);
-  ranges.require("surfaces", noise.initial.surfaces, 0.01, 100.0);
-  ranges.require("angular_rate", noise.initial.angular_rate, 0.01, 100.0);
-  ranges.require("shared_depth", noise.initial.shared_depth, 0.01, 100.0);
   ranges.group("noise.");
   ranges.require("learning_rate", noise.learning_rate, 0.0, 0.5);
   ranges.require("angular_rate_error_rad_per_s", noise.angular_rate_error_rad_per_s, 0, 10);
@@ -160,8 +153,7 @@ Config Config::paper() {
   config.surfaces = false;
   config.references.policy = ReferencePolicy::kPreviousFrame;
   config.depth_noise.registration_px = 0;
-  config.noise = {.initial = {},
-                  .learning_rate = 0,
+  config.noise = {.learning_rate = 0,
                   .angular_rate_error_rad_per_s = 0,
                   .shared_depth_m = 0,
                   .point_correlation = 0,

@@ -15,7 +15,6 @@
 #include "plvo/lines/line3d.hpp"
 #include "plvo/motion/motion_config.hpp"
 #include "plvo/odometry/stage.hpp"
-#include "plvo/odometry/tracking/noise_scales.hpp"
 
 namespace plvo {
 
@@ -105,11 +104,9 @@ struct PointConfig {
 // Scales of the noise models, and how they are learnt. The quality of image and depth depends on the sensor,
 // its exposure and the scene, so no constants suit all.
 struct NoiseConfig {
-  // Initial scales: plane residuals of real Kinects are half of σ_d (2), so their square is a quarter.
-  NoiseScales initial{.image = 1, .depth = 0.25, .lines = 1, .surfaces = 0.25};
-  // Each frame moves the scales by this share towards what its residuals show; 0: the scales stay, and the
-  // covariance does not grow where kinds of measurements contradict each other (disagreement.hpp,
-  // PoseWithCovariance::shifts).
+  // Each frame moves the scales by this share towards what its residuals show; 0: the models stay as they
+  // are, and the covariance does not grow where kinds of measurements contradict each other
+  // (disagreement.hpp, PoseWithCovariance::shifts).
   double learning_rate = 0.1;
   // Initial SDs of the nuisance parameters that all features of a frame share (nuisance_parameters.hpp); 0:
   // there are none.

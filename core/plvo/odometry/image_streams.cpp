@@ -97,7 +97,7 @@ bool DepthStream::is_too_old_for(const Se3& T_current_first) const {
 Status DepthStream::explain_stop(const char* first_word) const {
   return Status(StatusCode::kDamaged, first_word)
       .append("the depth image has been the same for ")
-      .append(static_cast<std::ptrdiff_t>(age_ns_ / 1'000'000))
+      .append(static_cast<std::ptrdiff_t>(1e-6 * static_cast<double>(age_ns_)))
       .append(" ms while the colour image moves: the depth stream has stopped; restart the camera");
 }
 

@@ -70,8 +70,9 @@ Odometry::Odometry() = default;
   camera_ = camera;
   config_ = config;
   memory_.extraction.init(camera_, config_->mask);
-  noise_ = config.noise.initial;
+  noise_ = initial_scales(config.noise);
   disagreement_ = {};
+  parallax_ = {};
   budget_.init(config.budget, limits);
   window_.init(features, limits.kept_keyframes);
   carried_.init(camera_.width, camera_.height);
@@ -123,7 +124,7 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu, const Mo
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
-  const StageContext context{camera_, *config_, noise_, arena_, times, carried_};
+  const StageContext context{camera_, *config_, noise_, arena_, times, carried_, parallax_};
   FeatureExtraction& extraction = memory_.extraction;
   const double brightness = extraction.prepare_image(context, input.colour);
 
@@ -256,7 +257,7 @@ void Odometry::reset() {
   points_found_ = {};
   window_.reset();
   view_slot_ = window_.current();
-  noise_ = config_->noise.initial;
+  noise_ = initial_scales(config_->noise);
   last_stamp_ns_.reset();
   colour_.forget();
   depth_.forget();

@@ -31,6 +31,7 @@
 #include "plvo/odometry/features/feature_extraction.hpp"
 #include "plvo/odometry/gravity_filter.hpp"
 #include "plvo/odometry/image_streams.hpp"
+#include "plvo/odometry/parallax_check.hpp"
 #include "plvo/odometry/prediction.hpp"
 #include "plvo/odometry/propagated_prior.hpp"
 #include "plvo/odometry/recovery.hpp"
@@ -166,6 +167,7 @@ class Odometry {
   GravityFilter gravity_;
   NoiseScales noise_;                          // learnt so far
   Disagreement disagreement_;                  // of late
+  ParallaxCheck parallax_;                     // of late
   std::optional<std::int64_t> last_stamp_ns_;  // of the last frame that was processed, good or not
   std::optional<std::int64_t> lost_since_ns_;  // stamp of the first lost frame since a pose from images
   bool start_is_set_ = false;                  // by set_pose()

@@ -41,13 +41,17 @@ Status tell_carried(CarriedCells& carried) {
       .append(bounds.bottom - 1);
 }
 
-// A status that says that points, lines and surfaces do not show one motion.
-Status tell_disagreement(double inflation) {
+// A status that says that points, lines and surfaces do not show one motion, or what is seen not the one that
+// depth shows.
+Status tell_disagreement(bool parallax_fails, double inflation) {
   constexpr double kWorthSaying = 100;  // the SD is more than ten times as large
-  if (inflation <= kWorthSaying) return {};
-  return Status(StatusCode::kOk,
-                "points, lines and surfaces disagree about the motion: its covariance is multiplied by ")
-      .append(static_cast<std::ptrdiff_t>(inflation));
+  Status status;
+  if (parallax_fails)
+    status.append("depth contradicts parallax (a mirror?); the motion follows depth");
+  else if (inflation > kWorthSaying)
+    status.append("points, lines and surfaces disagree about the motion: its covariance is multiplied by ")
+        .append(static_cast<std::ptrdiff_t>(inflation));
+  return status;
 }
 
 // Prepares the features and the image of the current frame for the next ones.
@@ -132,7 +136,9 @@ void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool is
     pose = advance(from, motion.T_current_reference, covariance, shifts);
   }
   result.disagreement = disagreement_.inflation();
-  if (result.status.message()[0] == '\0') result.status = tell_disagreement(result.disagreement);
+  parallax_.note(tracked.depth_shift, static_cast<double>(since_last_ns) * 1e-9);
+  if (result.status.message()[0] == '\0')
+    result.status = tell_disagreement(parallax_.fails(), result.disagreement);
   if (frame.prior.gravity) {
     gravity_.read(*frame.prior.gravity, from, pose);
     window_.move_keyframe(from);
@@ -241,6 +247,7 @@ void Odometry::forget_world() {
   propagated_prior_ = PropagatedPrior();
   gravity_.forget();
   disagreement_ = {};
+  parallax_ = {};
   lost_since_ns_.reset();
   depth_.forget_stop();
   world_is_lost_ = true;

@@ -7,7 +7,9 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/odometry/parallax_check.hpp"
 #include "plvo/odometry/stage.hpp"
+#include "plvo/odometry/tracking/noise_scales.hpp"
 #include "plvo/points/carried_cells.hpp"
 
 namespace plvo {
@@ -19,6 +21,7 @@ struct StageContext {
   Arena& scratch;
   StageTimes& times;      // of this frame
   CarriedCells& carried;  // found so far
+  const ParallaxCheck& parallax;
 };
 
 // Adds the duration of a scope to the time of a stage, by the clock of Config, and calls Config's hook at its

@@ -119,6 +119,13 @@ void note_nuisance(const NuisanceParameters& shared, const NuisanceEstimate& est
   observed.shared_depth = mean_square(shared, estimate, NuisanceField::kAngularRate, NuisanceField::kDepth);
 }
 
+[[gnu::noinline]] NoiseScales initial_scales(const NoiseConfig& config) {
+  constexpr double kQuarter = 0.25;
+  NoiseScales scales;
+  if (config.learning_rate > 0) scales.depth = scales.surfaces = kQuarter;
+  return scales;
+}
+
 void learn(const NoiseConfig& config, const NoiseScales& observed, NoiseScales& scales) {
   scales.image = step(scales.image, observed.image, config.learning_rate);
   scales.depth = step(scales.depth, observed.depth, config.learning_rate);

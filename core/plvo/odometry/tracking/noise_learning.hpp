@@ -15,6 +15,7 @@
 #include "plvo/motion/point_constraints.hpp"
 #include "plvo/motion/surface_constraints.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/odometry/tracking/noise_scales.hpp"
 
 namespace plvo {
 
@@ -30,6 +31,10 @@ double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_re
 // remaining variance, over the prior's variance (expectation maximisation of a variance component); 1 for a
 // group that is not estimated.
 void note_nuisance(const NuisanceParameters& shared, const NuisanceEstimate& estimate, NoiseScales& observed);
+
+// The scales before anything is learnt. Plane residuals of real Kinects are half of σ_d (2), so their square
+// is a quarter. Without learning the models stay as they are.
+NoiseScales initial_scales(const NoiseConfig& config);
 
 // Moves `scales` one step towards what a frame showed; observed is a factor on the scales.
 void learn(const NoiseConfig& config, const NoiseScales& observed, NoiseScales& scales);

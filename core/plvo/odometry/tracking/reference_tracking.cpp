@@ -2,6 +2,7 @@
 #include "plvo/odometry/tracking/reference_tracking.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "plvo/motion/prior_constraint.hpp"
 #include "plvo/odometry/tracking/carried_features.hpp"
@@ -32,6 +33,12 @@ constexpr std::size_t kGlancePoints = 64;
 // With a propagated prior, the covariance states how uncertain the directions are that vision leaves open.
 // The bounds on the SDs are then this large, so that no estimate fails by them.
 constexpr double kUnboundedSigma = 1e6;
+
+// Depths contradict the motion if their χ²(3) exceeds this: a test at 0.99.
+constexpr double kMostPlausibleOfDepths = 11.3;
+// Where what is seen does not lie at its depth, points and lines have this weight. They then decide the
+// directions alone that surfaces and other sensors leave open.
+constexpr double kWeightInDoubt = 1. / 1024;
 
 // Order of the constraint sets of an estimate: points and lines of each reference.
 constexpr std::size_t points_set(std::size_t reference) { return 2 * reference; }
@@ -144,7 +151,7 @@ void ReferenceTracking::set_poses(std::span<const Reference> references, const M
 }
 
 void ReferenceTracking::estimate(const Association& association, const CurrentFrame& current,
-                                 const MotionStart& start, const LmOptions& lm, TrackedMotion& tracked) {
+                                 MotionStart& start, const LmOptions& lm, TrackedMotion& tracked) {
   const Config& config = current.context.config;
   Arena& scratch = current.context.scratch;
   const StageTimer timer(current.context, Stage::kMotion);
@@ -171,8 +178,26 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
 
   tracked.exposure = {};
   tracked.observed = {};
-  estimate_motion(std::span(sets).first(matched_sets(features.size())), std::span(others).first(other_count),
-                  association.poses, motion_config, lm, config.seed, start, scratch, tracked.motion);
+  tracked.depth_shift = {};
+  const auto matched = std::span(sets).first(matched_sets(features.size()));
+  const auto solve = [&] {
+    estimate_motion(matched, std::span(others).first(other_count), association.poses, motion_config, lm,
+                    config.seed, start, scratch, tracked.motion);
+  };
+  solve();
+  if (tracked.ok() && start.registered && start.search_beside && other_count > 0) {
+    const Se3 T_by_parallax = tracked.motion.T_current_reference;
+    tracked.depth_shift = depth_shift(constraints.points[0], T_by_parallax, config.noise.shared_depth_m);
+    if (current.context.parallax.fails() || tracked.depth_shift.chi_square > kMostPlausibleOfDepths) {
+      for (ConstraintSet* set : matched) set->weaken(kWeightInDoubt);
+      // In the place of a start of its own, which would be on the stack.
+      const Se3* const prediction = std::exchange(start.prediction, &T_by_parallax);
+      const bool estimated = std::exchange(start.estimated, true);
+      solve();
+      start.prediction = prediction;
+      start.estimated = estimated;
+    }
+  }
   for (std::size_t r = 0; r < features.size(); ++r) {
     const std::span<const std::uint8_t> points = constraints.points[r].inliers();
     const std::span<const std::uint8_t> lines = constraints.lines[r].inliers();
@@ -300,7 +325,8 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
       whole
           ? nuisance_parameters(context.config.noise, association.features[0].current_exposure, context.noise)
           : NuisanceParameters{};
-  estimate(association, current, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, tracked);
+  MotionStart start(&T_predicted, shared);
+  estimate(association, current, start, whole ? kFineSolve : kRoughSolve, tracked);
   if (tracked.ok())
     tracked.exposure = current_exposure(context.camera, reference.timing, tracked.motion.T_current_reference);
 }

@@ -65,9 +65,10 @@ struct MotionBase {
 struct TrackedMotion {
   MotionEstimate motion;  // from the base
   MotionBase base;
-  bool gives_up = false;  // the references are out of view for too long
-  Exposure exposure;      // motion of the camera during the exposure of the current frame
-  NoiseScales observed;   // observed scales of the noise
+  bool gives_up = false;   // the references are out of view for too long
+  Exposure exposure;       // motion of the camera during the exposure of the current frame
+  NoiseScales observed;    // observed scales of the noise
+  DepthShift depth_shift;  // from the motion by parallax; by the matches with the base
   MatchCounts points, lines;
   int ransac_iterations = 0, lm_iterations = 0;  // of all estimates that were tried
 
@@ -141,7 +142,7 @@ class ReferenceTracking {
                            const Se3& T_current_base, Association& association, bool is_whole);
   void look_beside_stayed(std::span<const Reference> references, const CurrentFrame& current,
                           const Association& association, MotionStart& start, TrackedMotion& tracked);
-  void estimate(const Association& association, const CurrentFrame& current, const MotionStart& start,
+  void estimate(const Association& association, const CurrentFrame& current, MotionStart& start,
                 const LmOptions& lm, TrackedMotion& tracked);
 
   std::array<ReferenceTracks, kMaxReferences> tracks_;
