@@ -61,8 +61,7 @@ class Pairs {
     const NoiseScales noise = initial_scales(config_.noise);
     StageTimes times{};
     CarriedCells carried;
-    const ParallaxCheck parallax;
-    const StageContext context{camera_, config_, noise, arena_, times, carried, parallax};
+    const StageContext context{camera_, config_, noise, arena_, times, carried, nullptr};
     FeatureExtraction& extraction = modules_.extraction;
     const DepthSampler depth = extraction.depth_sampler(frame, config_.depth_noise);
     PredictedMotion predicted;

@@ -249,8 +249,7 @@ TEST(Mask, NoSurfaceSampleLiesInMaskedPixels) {
   const NoiseScales noise = initial_scales(config.noise);
   StageTimes times{};
   CarriedCells carried;
-  const ParallaxCheck parallax;
-  const StageContext context{camera, config, noise, arena, times, carried, parallax};
+  const StageContext context{camera, config, noise, arena, times, carried, nullptr};
   const MaskedPixels masked(camera);
   std::size_t samples = 0;
   for (int i = 0; i < 4; ++i) {

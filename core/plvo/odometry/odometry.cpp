@@ -124,7 +124,8 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu, const Mo
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
-  const StageContext context{camera_, *config_, noise_, arena_, times, carried_, parallax_};
+  const StageContext context{
+      camera_, *config_, noise_, arena_, times, carried_, depth_.is_repeated() ? nullptr : &parallax_};
   FeatureExtraction& extraction = memory_.extraction;
   const double brightness = extraction.prepare_image(context, input.colour);
 

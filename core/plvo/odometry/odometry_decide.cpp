@@ -75,9 +75,8 @@ void decide_start(const Window& window, const GravityFilter& gravity, const Curr
   decision.gravity = Decision::Gravity::kLevel;
   if (frame.prior.gravity) return;
   decision.outcome = Decision::Outcome::kWait;
-  decision.status = {
-      StatusCode::kNotFound,
-      "waiting for gravity: Config::level_world needs the direction of gravity in the first frame's prior"};
+  decision.status = {StatusCode::kNotFound,
+                     "waiting for gravity: Config::level_world needs gravity in the first frame's prior"};
 }
 
 // Which references stay, by the inliers of the last estimate. A reference with more features than the budget

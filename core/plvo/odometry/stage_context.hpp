@@ -19,9 +19,9 @@ struct StageContext {
   const Config& config;
   const NoiseScales& noise;  // learnt so far
   Arena& scratch;
-  StageTimes& times;      // of this frame
-  CarriedCells& carried;  // found so far
-  const ParallaxCheck& parallax;
+  StageTimes& times;              // of this frame
+  CarriedCells& carried;          // found so far
+  const ParallaxCheck* parallax;  // null: the depth image is an old one, and cannot be asked
 };
 
 // Adds the duration of a scope to the time of a stage, by the clock of Config, and calls Config's hook at its

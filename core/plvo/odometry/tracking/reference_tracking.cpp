@@ -185,10 +185,11 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
                     config.seed, start, scratch, tracked.motion);
   };
   solve();
-  if (tracked.ok() && start.registered && start.search_beside && other_count > 0) {
+  const ParallaxCheck* const parallax = current.context.parallax;
+  if (parallax != nullptr && tracked.ok() && start.registered && start.search_beside && other_count > 0) {
     const Se3 T_by_parallax = tracked.motion.T_current_reference;
     tracked.depth_shift = depth_shift(constraints.points[0], T_by_parallax, config.noise.shared_depth_m);
-    if (current.context.parallax.fails() || tracked.depth_shift.chi_square > kMostPlausibleOfDepths) {
+    if (parallax->fails() || tracked.depth_shift.chi_square > kMostPlausibleOfDepths) {
       for (ConstraintSet* set : matched) set->weaken(kWeightInDoubt);
       // In the place of a start of its own, which would be on the stack.
       const Se3* const prediction = std::exchange(start.prediction, &T_by_parallax);
