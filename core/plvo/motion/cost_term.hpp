@@ -65,6 +65,7 @@ class CostTerm {
     correlation_ = correlation;
     weight_ = weight;
   }
+  // Multiplies the weight.
   void weaken(double factor) { weight_ *= factor; }
   std::size_t reference() const { return reference_; }
   double correlation() const { return correlation_; }
