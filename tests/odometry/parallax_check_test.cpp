@@ -39,7 +39,7 @@ double ratio_in_sigmas(const std::vector<Seen>& frames) {
     square += weight * shift.information * shift.t_z * shift.t_z;
     weight *= 1 / (1 + frames[i].elapsed_s);
   }
-  return product / square / std::sqrt(1 / square + 0.02 * 0.02);
+  return product / square / std::sqrt(1 / square + 0.03 * 0.03);
 }
 
 // t_z in every frame, and `share` of it is added by depth, besides noise.
@@ -89,7 +89,7 @@ TEST(ParallaxCheck, FindsAMirrorOverASecond) {
 TEST(ParallaxCheck, PassesErrorsOfTheCalibration) {
   Gaussian gaussian(6);
   gaussian.set_silent(true);
-  EXPECT_FALSE(fails_over(in_proportion(1, 0.02, 300, gaussian)));
+  EXPECT_FALSE(fails_over(in_proportion(1, 0.03, 300, gaussian)));
 }
 
 // No surface shows its parallax before its depth.

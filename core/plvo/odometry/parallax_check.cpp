@@ -5,7 +5,7 @@ namespace plvo {
 namespace {
 
 constexpr double kParallaxMemory_s = 1;       // τ
-constexpr double kErrorOfCalibration = 0.02;  // σ
+constexpr double kErrorOfCalibration = 0.03;  // σ
 constexpr double kSigmas = 2.5;
 
 }  // namespace

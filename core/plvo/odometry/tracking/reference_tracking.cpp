@@ -190,11 +190,15 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
     const Se3 T_by_parallax = tracked.motion.T_current_reference;
     tracked.depth_shift = depth_shift(constraints.points[0], T_by_parallax, config.noise.shared_depth_m);
     if (parallax->fails() || tracked.depth_shift.chi_square > kMostPlausibleOfDepths) {
-      for (ConstraintSet* set : matched) set->weaken(kWeightInDoubt);
       // In the place of a start of its own, which would be on the stack.
       const Se3* const prediction = std::exchange(start.prediction, &T_by_parallax);
       const bool estimated = std::exchange(start.estimated, true);
-      solve();
+      // Where the rest does not determine the motion, parallax decides again.
+      for (const double factor : {kWeightInDoubt, 1 / kWeightInDoubt}) {
+        for (ConstraintSet* set : matched) set->weaken(factor);
+        solve();
+        if (tracked.ok()) break;
+      }
       start.prediction = prediction;
       start.estimated = estimated;
     }
