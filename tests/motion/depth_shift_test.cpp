@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the depths of points say about a motion: against a dense generalised least squares, its statistics,
-// and a mirror.
+// What the depths of points say about a motion: against a dense weighted least squares, its statistics, and a
+// mirror.
 #include "plvo/motion/depth_shift.hpp"
 
 #include <gtest/gtest.h>
@@ -35,8 +35,8 @@ class DepthShiftTest : public testing::Test {
   test::Bench bench_;
 };
 
-// Solves for (v_z, ω_x, ω_y) with the dense covariance matrix of all residuals. The smooth error is that of a
-// wall at the mean depth: an offset and two tilts that are unknown, too.
+// The same with dense matrices over all residuals. The smooth error is that of a wall at the mean depth: an
+// offset and two tilts.
 DepthShift dense_shift(const SimulatedPair& pair, const Se3& T, double correlation, double smooth_m) {
   const auto n = static_cast<int>(pair.points_reference.size());
   Eigen::MatrixXd J(n, 3);

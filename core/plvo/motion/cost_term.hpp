@@ -65,10 +65,10 @@ class CostTerm {
     correlation_ = correlation;
     weight_ = weight;
   }
-  // Multiplies the weight.
-  void weaken(double factor) { weight_ *= factor; }
+  void scale_weight(double factor) { weight_ *= factor; }
+  // Weight of n residuals relative to n independent ones, without the additional factor.
+  double share_of(int n) const { return n > 1 ? 1 / (1 + (n - 1) * correlation_) : 1; }
   std::size_t reference() const { return reference_; }
-  double correlation() const { return correlation_; }
   double weight() const { return weight_; }
 
   // One flag per match or sample; empty for a term without matches and samples. RANSAC or begin() writes

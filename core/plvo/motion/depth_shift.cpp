@@ -33,7 +33,7 @@ namespace plvo {
   const Vector3 shift = cholesky.solve(g);
   // The residuals correlate (CostTerm::set_reference), so the covariance of the shift is C / share. The
   // smooth error's terms 1, x and y times depth² move and tilt a wall at the mean depth.
-  const double share = 1 / (1 + (n - 1) * points.correlation());
+  const double share = points.share_of(n);
   const double tilt = smooth_error_m * depth / n;
   const double smooth[] = {tilt * depth / n, tilt, tilt};
   Matrix3 C = cholesky.inverse();

@@ -21,7 +21,7 @@ bool is_positive_definite_covariance(const Matrix3& C) {
 }
 
 constexpr const char* kCovariance =
-    "must have a positive definite covariance with variances between 1e-16 and 1e6";
+    "must have a symmetric, positive definite covariance with variances from 1e-16 to 1e6";
 
 }  // namespace
 

@@ -35,11 +35,11 @@ namespace {
 constexpr int kJointSize = JointInformation::kSize;
 using Joint = Matrix<kJointSize, kJointSize>;
 
-// Weight of a term's n inliers relative to n independent ones (CostTerm::set_reference).
+// Weight of a term's inliers relative to independent ones.
 double share_of(const CostTerm& term) {
   int n = 0;
   for (const std::uint8_t flag : term.inliers()) n += flag;
-  return term.weight() * (n > 1 ? 1 / (1 + (n - 1) * term.correlation()) : 1);
+  return term.weight() * term.share_of(n);
 }
 
 // Lower Cholesky factor of a semidefinite matrix. Columns with a pivot of zero are zero.

@@ -118,9 +118,9 @@ Window::Kept still_good(const Window& window, const ReferenceTracking& tracking,
   } else if (tracked.ok()) {
     decision.outcome = Decision::Outcome::kTrack;
     if (tracked.base.kind == MotionBase::Kind::kLost)
-      decision.status = {StatusCode::kOk,
-                         "tracking restarts from the lost frame before: the covariance includes the motion "
-                         "that was not observed"};
+      decision.status = {
+          StatusCode::kOk,
+          "tracking restarts from the lost frame before: the covariance includes the unobserved motion"};
     decision.kept = still_good(window_, memory_.tracking, *config_, budget_.capacity(), tracked.base);
   } else if (window_.has_keyframe() && !tracked.gives_up) {
     decision.outcome = Decision::Outcome::kLose;

@@ -41,8 +41,7 @@ Status tell_carried(CarriedCells& carried) {
       .append(bounds.bottom - 1);
 }
 
-// A status that says that points, lines and surfaces do not show one motion, or what is seen not the one that
-// depth shows.
+// A status that says whether depth contradicts parallax, or else whether points, lines and surfaces disagree.
 Status tell_disagreement(bool parallax_fails, double inflation) {
   constexpr double kWorthSaying = 100;  // the SD is more than ten times as large
   Status status;
@@ -128,15 +127,15 @@ void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool is
   PoseWithCovariance pose = advance(from, motion.T_current_reference, covariance, shifts);
   const Window::Frame& last = window_.last_frame();
   const std::int64_t since_last_ns = elapsed_ns(last.features.stamp_ns, frame.stamp_ns());
+  const double since_last_s = static_cast<double>(since_last_ns) * 1e-9;
   if (learns && !result.relocalised && !result.restarted)
-    disagreement_.note(last.pose, pose, motion.T_current_reference, motion.C_H,
-                       static_cast<double>(since_last_ns) * 1e-9);
+    disagreement_.note(last.pose, pose, motion.T_current_reference, motion.C_H, since_last_s);
   if (disagreement_.inflation() > 1) {
     covariance *= disagreement_.inflation();
     pose = advance(from, motion.T_current_reference, covariance, shifts);
   }
   result.disagreement = disagreement_.inflation();
-  parallax_.note(tracked.depth_shift, static_cast<double>(since_last_ns) * 1e-9);
+  parallax_.note(tracked.depth_shift, since_last_s);
   if (result.status.message()[0] == '\0')
     result.status = tell_disagreement(parallax_.fails(), result.disagreement);
   if (frame.prior.gravity) {

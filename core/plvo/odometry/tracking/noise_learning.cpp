@@ -120,9 +120,9 @@ void note_nuisance(const NuisanceParameters& shared, const NuisanceEstimate& est
 }
 
 [[gnu::noinline]] NoiseScales initial_scales(const NoiseConfig& config) {
-  constexpr double kQuarter = 0.25;
+  constexpr double kOfPlanes = 0.25;
   NoiseScales scales;
-  if (config.learning_rate > 0) scales.depth = scales.surfaces = kQuarter;
+  if (config.learning_rate > 0) scales.depth = scales.surfaces = kOfPlanes;
   return scales;
 }
 

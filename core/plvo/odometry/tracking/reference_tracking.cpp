@@ -2,7 +2,6 @@
 #include "plvo/odometry/tracking/reference_tracking.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "plvo/motion/prior_constraint.hpp"
 #include "plvo/odometry/tracking/carried_features.hpp"
@@ -151,7 +150,7 @@ void ReferenceTracking::set_poses(std::span<const Reference> references, const M
 }
 
 void ReferenceTracking::estimate(const Association& association, const CurrentFrame& current,
-                                 MotionStart& start, const LmOptions& lm, TrackedMotion& tracked) {
+                                 const MotionStart& start, const LmOptions& lm, TrackedMotion& tracked) {
   const Config& config = current.context.config;
   Arena& scratch = current.context.scratch;
   const StageTimer timer(current.context, Stage::kMotion);
@@ -180,27 +179,25 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
   tracked.observed = {};
   tracked.depth_shift = {};
   const auto matched = std::span(sets).first(matched_sets(features.size()));
-  const auto solve = [&] {
+  const auto solve = [&](const MotionStart& from) {
     estimate_motion(matched, std::span(others).first(other_count), association.poses, motion_config, lm,
-                    config.seed, start, scratch, tracked.motion);
+                    config.seed, from, scratch, tracked.motion);
   };
-  solve();
+  solve(start);
   const ParallaxCheck* const parallax = current.context.parallax;
   if (parallax != nullptr && tracked.ok() && start.registered && start.search_beside && other_count > 0) {
     const Se3 T_by_parallax = tracked.motion.T_current_reference;
     tracked.depth_shift = depth_shift(constraints.points[0], T_by_parallax, config.noise.shared_depth_m);
     if (parallax->fails() || tracked.depth_shift.chi_square > kMostPlausibleOfDepths) {
-      // In the place of a start of its own, which would be on the stack.
-      const Se3* const prediction = std::exchange(start.prediction, &T_by_parallax);
-      const bool estimated = std::exchange(start.estimated, true);
+      MotionStart again = start;
+      again.prediction = &T_by_parallax;
+      again.estimated = true;
       // Where the rest does not determine the motion, parallax decides again.
       for (const double factor : {kWeightInDoubt, 1 / kWeightInDoubt}) {
-        for (ConstraintSet* set : matched) set->weaken(factor);
-        solve();
+        for (ConstraintSet* set : matched) set->scale_weight(factor);
+        solve(again);
         if (tracked.ok()) break;
       }
-      start.prediction = prediction;
-      start.estimated = estimated;
     }
   }
   for (std::size_t r = 0; r < features.size(); ++r) {
@@ -330,8 +327,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
       whole
           ? nuisance_parameters(context.config.noise, association.features[0].current_exposure, context.noise)
           : NuisanceParameters{};
-  MotionStart start(&T_predicted, shared);
-  estimate(association, current, start, whole ? kFineSolve : kRoughSolve, tracked);
+  estimate(association, current, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, tracked);
   if (tracked.ok())
     tracked.exposure = current_exposure(context.camera, reference.timing, tracked.motion.T_current_reference);
 }

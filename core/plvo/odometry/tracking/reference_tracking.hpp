@@ -142,7 +142,7 @@ class ReferenceTracking {
                            const Se3& T_current_base, Association& association, bool is_whole);
   void look_beside_stayed(std::span<const Reference> references, const CurrentFrame& current,
                           const Association& association, MotionStart& start, TrackedMotion& tracked);
-  void estimate(const Association& association, const CurrentFrame& current, MotionStart& start,
+  void estimate(const Association& association, const CurrentFrame& current, const MotionStart& start,
                 const LmOptions& lm, TrackedMotion& tracked);
 
   std::array<ReferenceTracks, kMaxReferences> tracks_;
