@@ -3,6 +3,7 @@
 // tracking has restarted elsewhere. A different place that looks alike is rejected.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -108,6 +109,40 @@ TEST(Recovery, RejectsASimilarViewBeyondTheUncertainty) {
   EXPECT_FALSE(after.relocalised);
   EXPECT_EQ(after.state, TrackState::kInitialising);
   EXPECT_EQ(after.T_world_camera.t, before.T_world_camera.t);
+}
+
+// The nearer of two views shows less of the keyframe. Right after the loss it is tracked all the same. A
+// minute later the camera may be anywhere, and a part of the keyframe's view may be that of another place.
+TEST(Recovery, AfterALongGapAPartOfTheOldViewIsNotEnough) {
+  Config config;
+  config.references.policy = ReferencePolicy::kKeyframe;
+  int refused = 0;
+  for (int away = 4; away <= 40; away += 4) {
+    std::array<TrackResult, 2> back;
+    int of_keyframe = 0;
+    for (const bool is_late : {false, true}) {
+      ProceduralCamera camera(1, config, 33'333'333);
+      for (int view = 0; view <= kOut; ++view) (void)camera.see(view);
+      of_keyframe = camera.odometry.keyframe().features->count_3d();
+      if (is_late) camera.pause(1800);
+      (void)camera.see(kDark);
+      back[is_late ? 1 : 0] = camera.see(kOut + away);
+    }
+    const auto& [early, late] = back;
+    const double share = (early.points.inliers + early.lines.inliers) / static_cast<double>(of_keyframe);
+    std::printf("%d views on: %s, %.2f of the keyframe; late: %s\n", away, to_string(early.state), share,
+                to_string(late.state));
+    if (early.state != TrackState::kTracking) continue;
+    // Registration finds more or less, so not at the very threshold.
+    if (share > config.references.keyframe_inlier_ratio + 0.1) {
+      EXPECT_EQ(late.state, TrackState::kTracking) << away;
+      EXPECT_LT(distance_to_truth(late, kOut + away), 0.03) << away;
+    } else if (share < config.references.keyframe_inlier_ratio - 0.05) {
+      EXPECT_NE(late.state, TrackState::kTracking) << away;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
 }
 
 TEST(Recovery, SetPoseDropsTheKeptKeyframes) {

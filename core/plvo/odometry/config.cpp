@@ -2,6 +2,12 @@
 #include "plvo/odometry/config.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
 
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/motion/motion_problem.hpp"
@@ -10,34 +16,57 @@
 namespace plvo {
 namespace {
 
+// A bounded entry of a group of settings. Both bounds are allowed; NaN is not.
+struct Range {
+  enum class Type : std::uint8_t { kDouble, kInt, kNanoseconds };  // bounds of the last in seconds
+
+  const char* entry;
+  std::uint16_t offset;  // in the group, bytes
+  Type type;
+  float low, high;
+};
+
+template <typename T>
+double value_at(const std::byte* group, const Range& range) {
+  T value;
+  std::memcpy(&value, group + range.offset, sizeof value);
+  return static_cast<double>(value);
+}
+
 // Keeps the first number that is outside its range. Each range appears once; the message is built from it.
 class RangeCheck {
  public:
-  // Sets the group that the following entries belong to.
-  void group(const char* name) { group_ = name; }
-
-  // Both bounds are allowed; NaN is not.
-  void require(const char* entry, double value, double low, double high) {
-    if (!status_.ok() || (value >= low && value <= high)) return;
-    status_ = Status(StatusCode::kInvalidArgument, "config: ")
-                  .append(group_)
-                  .append(entry)
-                  .append(" must lie between ");
-    append_bound(low);
-    status_.append(" and ");
-    append_bound(high);
-  }
-  // Overloads for whole numbers take fewer instructions at the call.
-  void require(const char* entry, double value, int low, int high) {
-    require(entry, value, static_cast<double>(low), static_cast<double>(high));
-  }
-  void require(const char* entry, int value, int low, int high) {
-    require(entry, static_cast<double>(value), low, high);
+  template <typename Group>
+  void check(const char* name, const Group& group, std::span<const Range> ranges) {
+    static_assert(std::is_standard_layout_v<Group>);
+    check_bytes(name, reinterpret_cast<const std::byte*>(&group), ranges);
   }
   const Status& status() const { return status_; }
 
  private:
-  // Appends the bound in decimal: up to 1e12, with up to six decimals. It does without the C library. It
+  [[gnu::noinline]] void check_bytes(const char* name, const std::byte* group,
+                                     std::span<const Range> ranges) {
+    for (const Range& range : ranges) {
+      const double value = range.type == Range::Type::kDouble ? value_at<double>(group, range)
+                           : range.type == Range::Type::kInt  ? value_at<int>(group, range)
+                                                              : value_at<std::int64_t>(group, range);
+      const double unit = range.type == Range::Type::kNanoseconds ? 1e9 : 1;
+      const double low = unit * decimal(range.low), high = unit * decimal(range.high);
+      if (!status_.ok() || (value >= low && value <= high)) continue;
+      status_ = Status(StatusCode::kInvalidArgument, "config: ")
+                    .append(name)
+                    .append(range.entry)
+                    .append(" must lie between ");
+      append_bound(low);
+      status_.append(" and ");
+      append_bound(high);
+    }
+  }
+
+  // The number of at most six decimals that a float stands for.
+  static double decimal(float bound) { return std::floor(static_cast<double>(bound) * 1e6 + 0.5) / 1e6; }
+
+  // Appends the bound in decimal, with up to six decimals. It does without the C library. It
   // works in doubles because small processors divide those in hardware, but 64-bit integers in a long
   // function.
   void append_bound(double bound) {
@@ -54,97 +83,90 @@ class RangeCheck {
     }
   }
 
-  const char* group_ = "";
   Status status_;
 };
 
-void check(RangeCheck& ranges, const DepthNoise& noise) {
-  ranges.group("depth_noise.");
-  ranges.require("c1", noise.c1, -1, 1);
-  ranges.require("c2", noise.c2, -1, 1);
-  ranges.require("c3", noise.c3, -1, 1);
-  ranges.require("floor_m", noise.floor_m, 1e-6, 1.0);
-  ranges.require("registration_px", noise.registration_px, 0, 20);
-}
+constexpr Range kDepthNoiseRanges[] = {
+    {"c1", offsetof(DepthNoise, c1), Range::Type::kDouble, -1, 1},
+    {"c2", offsetof(DepthNoise, c2), Range::Type::kDouble, -1, 1},
+    {"c3", offsetof(DepthNoise, c3), Range::Type::kDouble, -1, 1},
+    {"floor_m", offsetof(DepthNoise, floor_m), Range::Type::kDouble, 1e-6F, 1},
+    {"registration_px", offsetof(DepthNoise, registration_px), Range::Type::kDouble, 0, 20},
+};
+constexpr Range kPointsRanges[] = {
+    {"sigma_px", offsetof(PointConfig, sigma_px), Range::Type::kDouble, 0.01F, 20},
+    {"depth_reach_px", offsetof(PointConfig, depth_reach_px), Range::Type::kInt, 0, DepthSampler::kMaxRadius},
+};
+constexpr Range kNoiseRanges[] = {
+    {"learning_rate", offsetof(NoiseConfig, learning_rate), Range::Type::kDouble, 0, 0.5F},
+    {"angular_rate_error_rad_per_s", offsetof(NoiseConfig, angular_rate_error_rad_per_s),
+     Range::Type::kDouble, 0, 10},
+    {"shared_depth_m", offsetof(NoiseConfig, shared_depth_m), Range::Type::kDouble, 0, 1},
+    {"point_correlation", offsetof(NoiseConfig, point_correlation), Range::Type::kDouble, 0, 1},
+    {"line_correlation", offsetof(NoiseConfig, line_correlation), Range::Type::kDouble, 0, 1},
+    {"surface_correlation", offsetof(NoiseConfig, surface_correlation), Range::Type::kDouble, 0, 1},
+    {"common_mode_share", offsetof(NoiseConfig, common_mode_share), Range::Type::kDouble, 0, 1},
+};
+constexpr Range kLinesRanges[] = {
+    {"sample_spacing_px", offsetof(Line3dConfig, sample_spacing_px), Range::Type::kDouble, 1, 1000},
+    {"min_agreement", offsetof(Line3dConfig, min_agreement), Range::Type::kDouble, 0, 1},
+    {"sigma_p_px", offsetof(Line3dConfig, sigma_p_px), Range::Type::kDouble, 0.01F, 20},
+    {"inlier_chi_square", offsetof(Line3dConfig, inlier_chi_square), Range::Type::kDouble, 0.1F, 100},
+    {"side_reach_px", offsetof(Line3dConfig, side_reach_px), Range::Type::kInt, 0, kMaxSideReach},
+    {"depth_correlation_px", offsetof(Line3dConfig, depth_correlation_px), Range::Type::kDouble, 0.01F, 1000},
+    {"transverse_floor_px", offsetof(Line3dConfig, transverse_floor_px), Range::Type::kDouble, 0, 20},
+};
+constexpr Range kMotionRanges[] = {
+    {"max_ransac_iterations", offsetof(MotionConfig, max_ransac_iterations), Range::Type::kInt, 1, 100000},
+    {"min_inliers", offsetof(MotionConfig, min_inliers), Range::Type::kInt, 3, 10000},
+    {"max_sigma_m", offsetof(MotionConfig, max_sigma_m), Range::Type::kDouble, 1e-6F, 100},
+    {"max_sigma_rad", offsetof(MotionConfig, max_sigma_rad), Range::Type::kDouble, 1e-6F, 10},
+};
+constexpr Range kReferencesRanges[] = {
+    {"keyframe_inlier_ratio", offsetof(ReferenceConfig, keyframe_inlier_ratio), Range::Type::kDouble, 0, 1},
+    {"max_lost_s", offsetof(ReferenceConfig, max_lost_s), Range::Type::kDouble, 0, 1000000},
+    {"process_noise_m_per_s", offsetof(ReferenceConfig, process_noise_m_per_s), Range::Type::kDouble, 0, 100},
+    {"process_noise_rad_per_s", offsetof(ReferenceConfig, process_noise_rad_per_s), Range::Type::kDouble, 0,
+     100},
+};
+constexpr Range kBudgetRanges[] = {
+    {"frame_ns", offsetof(BudgetConfig, frame_ns), Range::Type::kNanoseconds, 0, 1000},
+    {"patience_frames", offsetof(BudgetConfig, patience_frames), Range::Type::kInt, 1, 1000000},
+    {"spare_share", offsetof(BudgetConfig, spare_share), Range::Type::kDouble, 0, 1},
+};
 
-void check(RangeCheck& ranges, const PointConfig& points) {
-  ranges.group("points.");
-  ranges.require("sigma_px", points.sigma_px, 0.01, 20.0);
-  ranges.require("depth_reach_px", points.depth_reach_px, 0, DepthSampler::kMaxRadius);
-}
-
-void check(RangeCheck& ranges, const NoiseConfig& noise) {
-  ranges.group("noise.");
-  ranges.require("learning_rate", noise.learning_rate, 0.0, 0.5);
-  ranges.require("angular_rate_error_rad_per_s", noise.angular_rate_error_rad_per_s, 0, 10);
-  ranges.require("shared_depth_m", noise.shared_depth_m, 0, 1);
-  ranges.require("point_correlation", noise.point_correlation, 0, 1);
-  ranges.require("line_correlation", noise.line_correlation, 0, 1);
-  ranges.require("surface_correlation", noise.surface_correlation, 0, 1);
-  ranges.require("common_mode_share", noise.common_mode_share, 0, 1);
-}
-
-void check(RangeCheck& ranges, const Line3dConfig& lines) {
-  ranges.group("lines.");
-  ranges.require("sample_spacing_px", lines.sample_spacing_px, 1, 1000);
-  ranges.require("min_agreement", lines.min_agreement, 0, 1);
-  ranges.require("sigma_p_px", lines.sigma_p_px, 0.01, 20.0);
-  ranges.require("inlier_chi_square", lines.inlier_chi_square, 0.1, 100.0);
-  ranges.require("side_reach_px", lines.side_reach_px, 0, kMaxSideReach);
-  ranges.require("depth_correlation_px", lines.depth_correlation_px, 0.01, 1000.0);
-  ranges.require("transverse_floor_px", lines.transverse_floor_px, 0, 20);
-}
-
-void check(RangeCheck& ranges, const MotionConfig& motion) {
-  ranges.group("motion.");
-  ranges.require("max_ransac_iterations", motion.max_ransac_iterations, 1, 100000);
-  ranges.require("min_inliers", motion.min_inliers, 3, 10000);
-  ranges.require("max_sigma_m", motion.max_sigma_m, 1e-6, 100.0);
-  ranges.require("max_sigma_rad", motion.max_sigma_rad, 1e-6, 10.0);
-}
-
-void check(RangeCheck& ranges, const ReferenceConfig& references) {
-  ranges.group("references.");
-  ranges.require("keyframe_inlier_ratio", references.keyframe_inlier_ratio, 0, 1);
-  ranges.require("max_lost_s", references.max_lost_s, 0, 1000000);
-  ranges.require("process_noise_m_per_s", references.process_noise_m_per_s, 0, 100);
-  ranges.require("process_noise_rad_per_s", references.process_noise_rad_per_s, 0, 100);
-}
-
-void check(RangeCheck& ranges, const BudgetConfig& budget) {
-  ranges.group("budget.");
-  ranges.require("frame_ns", static_cast<double>(budget.frame_ns), 0.0, 1e12);
-  ranges.require("patience_frames", budget.patience_frames, 1, 1000000);
-  ranges.require("spare_share", budget.spare_share, 0, 1);
-}
+constexpr Range kLimitsRanges[] = {
+    {"width", offsetof(Limits, width), Range::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
+    {"height", offsetof(Limits, height), Range::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
+    {"keypoints", offsetof(Limits, keypoints), Range::Type::kInt, 10, 60000},
+    {"segments", offsetof(Limits, segments), Range::Type::kInt, 1, 60000},
+    {"references", offsetof(Limits, references), Range::Type::kInt, 1, kMaxReferences},
+    {"line_bands", offsetof(Limits, line_bands), Range::Type::kInt, 1, 8},
+    {"cores", offsetof(Limits, cores), Range::Type::kInt, 1, 2},
+    {"surfaces", offsetof(Limits, surfaces), Range::Type::kInt, 0, 1000},
+};
 
 }  // namespace
 
 Status Limits::validate() const {
   RangeCheck ranges;
-  ranges.group("Limits::");
-  ranges.require("width", width, kLeastSide, kMostSide);
-  ranges.require("height", height, kLeastSide, kMostSide);
-  ranges.require("keypoints", keypoints, 10, 60000);
-  ranges.require("segments", segments, 1, 60000);
-  ranges.require("references", references, 1, kMaxReferences);
-  ranges.require("line_bands", line_bands, 1, 8);
-  ranges.require("kept_keyframes", kept_keyframes, 0,
-                 std::min(kMostKeptKeyframes, kMostOtherFrames - references));
-  ranges.require("cores", cores, 1, 2);
-  ranges.require("surfaces", surfaces, 0, 1000);
+  ranges.check("Limits::", *this, kLimitsRanges);
+  const int most_kept = std::min(kMostKeptKeyframes, kMostOtherFrames - references);
+  const Range kept{"kept_keyframes", offsetof(Limits, kept_keyframes), Range::Type::kInt, 0,
+                   static_cast<float>(most_kept)};
+  ranges.check("Limits::", *this, {&kept, 1});
   return ranges.status();
 }
 
 Status Config::validate() const {
   RangeCheck ranges;
-  check(ranges, depth_noise);
-  check(ranges, points);
-  check(ranges, lines);
-  check(ranges, noise);
-  check(ranges, references);
-  check(ranges, budget);
-  check(ranges, motion);
+  ranges.check("depth_noise.", depth_noise, kDepthNoiseRanges);
+  ranges.check("points.", points, kPointsRanges);
+  ranges.check("lines.", lines, kLinesRanges);
+  ranges.check("noise.", noise, kNoiseRanges);
+  ranges.check("references.", references, kReferencesRanges);
+  ranges.check("budget.", budget, kBudgetRanges);
+  ranges.check("motion.", motion, kMotionRanges);
   return ranges.status();
 }
 

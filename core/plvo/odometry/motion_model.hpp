@@ -17,14 +17,18 @@ namespace plvo {
 struct Velocity {
   Vector6 value = Vector6::Zero();
   std::int64_t measured_ns = 0;  // 0: the velocity is not known
+  static constexpr int kIntervals = 3;
 
   bool known() const { return measured_ns > 0; }
+  bool is_out_of_date(std::int64_t elapsed_ns) const {
+    return known() && static_cast<double>(elapsed_ns) > kIntervals * static_cast<double>(measured_ns);
+  }
   // Seconds for which the camera is assumed to keep this velocity, of the elapsed_ns since the
   // measurement. It is assumed to keep it for three times the interval over which it was measured,
   // but for 300 ms at least, and then to stand still: the longer the gap, the less the old velocity
   // says. The process noise covers the error.
   double moving_s(std::int64_t elapsed_ns) const {
-    constexpr double kIntervals = 3, kLeast_s = 0.3;
+    constexpr double kLeast_s = 0.3;
     if (!known()) return 0;
     const double longest_s = std::max(kIntervals * 1e-9 * static_cast<double>(measured_ns), kLeast_s);
     return std::min(1e-9 * static_cast<double>(elapsed_ns), longest_s);

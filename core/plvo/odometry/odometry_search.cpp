@@ -11,6 +11,14 @@
 namespace plvo {
 namespace {
 
+// Whether the last good frame is so long ago that its pose and velocity do not say where the camera is now.
+bool is_unobserved(const Window& window, const CurrentFrame& frame) {
+  const Window::Frame& last = window.last_frame();
+  const std::int64_t since_last_ns = elapsed_ns(last.features.stamp_ns, frame.stamp_ns());
+  return last.velocity.is_out_of_date(since_last_ns) && !frame.predicted.sensed.known() &&
+         1e-9 * static_cast<double>(since_last_ns) >= frame.context.config.references.max_lost_s;
+}
+
 // Searches for the motion since the lost frame. Not inlined: its prediction is on the stack during this
 // search only.
 [[gnu::noinline]] void search_from_lost(const Window& window, const CurrentFrame& frame,
@@ -47,6 +55,10 @@ void Odometry::search(const CurrentFrame& frame, TrackedMotion& tracked) {
   if (window_.has_keyframe()) {
     tracked.base.slot = window_.keyframe();
     search_motion(frame, tracking, tracked);
+    if (tracked.ok() && is_unobserved(window_, frame) &&
+        !still_seen(window_[window_.keyframe()].features, tracking.tracks(0),
+                    config_->references.keyframe_inlier_ratio))
+      tracked.motion.status = StatusCode::kNoConsensus;
     // Two equal images would agree on no motion, which is not measured.
     if (!tracked.ok() && window_.has_lost() && !colour_.is_repeated())
       search_from_lost(window_, frame, tracking, tracked);
