@@ -25,7 +25,8 @@ inline constexpr int kMirror = 1000;  // and above: views of the mirrored room, 
 
 class MappedCamera {
  public:
-  explicit MappedCamera(int keyframes) {
+  explicit MappedCamera(int keyframes, ReferencePolicy policy = Config().references.policy) {
+    config_.references.policy = policy;
     config_.references.max_lost_s = 0.06;
     memory_.resize(required_bytes(limits_));
     EXPECT_TRUE(odometry.init(memory_, sequence_.camera(), config_, limits_).ok());

@@ -52,6 +52,25 @@ LoopCheck::LoopCheck(const CameraModel& of_camera, const Config& config)
       line_correlation(config.noise.line_correlation),
       seed(config.seed) {}
 
+// Points are searched where the motion puts them; without one, in the whole image.
+void LoopCheck::match_points_of(const Se3* T_predicted, Views& views, Arena& scratch) const {
+  const std::size_t n_old = views.old_points.keypoints.size();
+  PointMatchConfig config;
+  if (T_predicted == nullptr) config.radius_px = camera.width + camera.height;
+  for (std::size_t i = 0; i < n_old; ++i) {
+    Prediction& prediction = views.predictions[i] = {0, 0, true};
+    if (T_predicted == nullptr) continue;
+    const Vector3 here = *T_predicted * views.old_points.points[i].p;
+    prediction.visible = here.z() > kNearestSeen_m;
+    if (!prediction.visible) continue;
+    const Vector2 at = project(camera.pinhole, here);
+    prediction.u = static_cast<float>(at.x());
+    prediction.v = static_cast<float>(at.y());
+  }
+  match_points(views.old_points, views.predictions.first(n_old), views.new_points, camera.width,
+               camera.height, config, scratch, views.point_matches);
+}
+
 void LoopCheck::match_lines_after(const Se3& T_new_old, const MapFeatures& old_view,
                                   const MapFeatures& new_view, Views& views, Arena& scratch) const {
   const std::size_t n_old = old_view.lines.size(), n_new = new_view.lines.size();
@@ -68,7 +87,7 @@ void LoopCheck::match_lines_after(const Se3& T_new_old, const MapFeatures& old_v
 }
 
 LoopMeasurement LoopCheck::operator()(const MapFeatures& old_view, const MapFeatures& new_view,
-                                      Arena& scratch) const {
+                                      Arena& scratch, const Se3* T_predicted) const {
   LoopMeasurement loop;
   const ScratchScope scope(scratch);
   const std::size_t most_points = std::max(old_view.points.size(), new_view.points.size());
@@ -77,16 +96,14 @@ LoopMeasurement LoopCheck::operator()(const MapFeatures& old_view, const MapFeat
   if (scratch.exhausted()) return loop;
   unpack_points(old_view, camera.pinhole, views.old_points);
   unpack_points(new_view, camera.pinhole, views.new_points);
-  std::fill(views.anywhere.begin(), views.anywhere.end(), Prediction{0, 0, true});
-  PointMatchConfig everywhere;
-  everywhere.radius_px = camera.width + camera.height;
-  match_points(views.old_points, views.anywhere, views.new_points, camera.width, camera.height, everywhere,
-               scratch, views.point_matches);
+  match_points_of(T_predicted, views, scratch);
 
   // The first estimate is from points alone. Lines are matched where its motion puts them, and join the
   // second estimate.
   Se3 T_new_old;
+  if (T_predicted != nullptr) T_new_old = *T_predicted;
   for (const bool with_lines : {false, true}) {
+    if (!with_lines && T_predicted != nullptr) continue;
     if (with_lines) match_lines_after(T_new_old, old_view, new_view, views, scratch);
     const ScratchScope estimating(scratch);
     PointConstraints points(views.old_points.points, views.new_points.points, views.point_matches.span(),
@@ -97,7 +114,7 @@ LoopMeasurement LoopCheck::operator()(const MapFeatures& old_view, const MapFeat
     lines.set_reference(0, line_correlation);
     const std::array<ConstraintSet*, 2> sets{&points, &lines};
     const MotionStart start(with_lines ? &T_new_old : nullptr, NuisanceParameters(), with_lines);
-    const std::span<MotionEstimate> estimate = scratch.take<MotionEstimate>("map check", 1);
+    const std::span<MotionEstimate> estimate = take_estimate(scratch);
     if (estimate.empty()) return loop;
     estimate_motion(sets, {}, MotionReferences(), with_lines ? motion : first_motion, kLoopSolve, seed, start,
                     scratch, estimate[0]);

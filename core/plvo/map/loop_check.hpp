@@ -31,7 +31,10 @@ struct LoopCheck {
   LoopCheck() = default;
   LoopCheck(const CameraModel& of_camera, const Config& config);
 
-  LoopMeasurement operator()(const MapFeatures& old_view, const MapFeatures& new_view, Arena& scratch) const;
+  // T_predicted: T_new_old, if it is known to some centimetres; features are then searched where it puts
+  // them.
+  LoopMeasurement operator()(const MapFeatures& old_view, const MapFeatures& new_view, Arena& scratch,
+                             const Se3* T_predicted = nullptr) const;
 
   // Reserves the scratch of a check.
   static constexpr void reserve(Arena& memory, const MapLimits& limits, int width, int height) {
@@ -47,6 +50,7 @@ struct LoopCheck {
       const ScratchScope matching(memory);
       take_line_match_scratch(memory, segments, segments);
     }
+    take_estimate(memory);
     size_motion(memory, 1, points, segments);
   }
 
@@ -54,7 +58,7 @@ struct LoopCheck {
   // Both views, unpacked, and their matches.
   struct Views {
     PointFeatures old_points, new_points;
-    std::span<Prediction> anywhere;
+    std::span<Prediction> predictions;
     std::span<Line3d> old_lines, new_lines;
     std::span<Segment> predicted, found;
     FixedVector<Match> point_matches, line_matches;
@@ -65,7 +69,7 @@ struct LoopCheck {
       side->keypoints = FixedVector<Keypoint>(memory.take<Keypoint>("map check", points));
       side->points = memory.take<Point3d>("map check", points);
     }
-    views.anywhere = memory.take<Prediction>("map check", points);
+    views.predictions = memory.take<Prediction>("map check", points);
     views.old_lines = memory.take<Line3d>("map check", segments);
     views.new_lines = memory.take<Line3d>("map check", segments);
     views.predicted = memory.take<Segment>("map check", segments);
@@ -74,6 +78,10 @@ struct LoopCheck {
     views.line_matches = FixedVector<Match>(memory.take<Match>("map check", segments));
     return views;
   }
+  static constexpr std::span<MotionEstimate> take_estimate(Arena& memory) {
+    return memory.take<MotionEstimate>("map check", 1);
+  }
+  void match_points_of(const Se3* T_predicted, Views& views, Arena& scratch) const;
   void match_lines_after(const Se3& T_new_old, const MapFeatures& old_view, const MapFeatures& new_view,
                          Views& views, Arena& scratch) const;
 };

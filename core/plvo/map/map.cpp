@@ -18,8 +18,13 @@ constexpr std::uint32_t kJudgedKeyframes = 10;
 constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
 // While the place is unknown, the score of a single such descriptor suffices.
 constexpr std::uint32_t kLeastScoreUnknown = PlaceIndex::kWholeVote;
-// The most promising views that a keyframe is compared with; kCandidates while the place is unknown.
-constexpr std::size_t kCandidatesKnown = 4;
+// A keyframe is compared with this many views that have the most votes, then judged. While the place is
+// unknown, it is compared with more, until the place is recognised or there are no more.
+constexpr std::size_t kFirstCandidates = 4, kVotedCandidates = 7, kMoreCandidates = 3;
+// Views near a hypothesis differ from it by less than this; see view_distance().
+constexpr float kNearView = 2;
+// A view with fewer points than this is not worth a comparison.
+constexpr std::size_t kLeastPoints = 20;
 // A place is recognised when this many hypotheses agree, with this many inliers together. Hypotheses of a
 // room that looks alike have few inliers each.
 constexpr int kLeastAgreeing = 3, kLeastInliersTogether = 120;
@@ -73,7 +78,7 @@ void Map::clear() {
   memory_.index.clear();
   memory_.graph.clear();
   std::fill(memory_.neighbours.begin(), memory_.neighbours.end(), MapMemory::Neighbour());
-  candidate_count_ = hypothesis_count_ = refreshed_ = 0;
+  candidate_count_ = to_compare_ = hypothesis_count_ = refreshed_ = 0;
   is_judged_ = true;
   follows_camera_ = false;
 }
@@ -91,10 +96,7 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
       (!follows_camera_ || view.features->stamp_ns != keyframe_stamp_ns_)) {
     add_keyframe(view, result, out);
   } else {
-    if (candidate_count_ > 0)
-      compare_next();
-    else if (!is_judged_)
-      judge(out);
+    search_on(out);
     memory_.graph.step();
     for (int i = 0; i < kRefreshedPerFrame && memory_.graph.size() > 0; ++i) {
       refreshed_ = (refreshed_ + 1) % memory_.graph.size();
@@ -144,7 +146,12 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                                     inverse_covariance(T_world_keyframe_, world_covariance_),
                                     view.T_world_camera, result.pose_covariance);
   }
-  if (!is_judged_) judge(out);
+  // While the place is unknown, a search goes on to its end. Otherwise that of the latest keyframe counts
+  // more.
+  const bool goes_on = !is_judged_ && !place_is_known(searched_) && !exceeds(covariance, kObservedMotion);
+  if (!is_judged_ && !goes_on) judge(out);
+  // No observed motion leads to the hypotheses from before.
+  if (exceeds(covariance, kObservedMotion)) hypothesis_count_ = 0;
   // Read before a keyframe is removed, because that may be the latest one.
   const bool begins_part = memory_.graph.size() == 0 || !follows_camera_;
   const std::uint32_t part =
@@ -169,7 +176,17 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   follows_camera_ = true;
   keyframe_stamp_ns_ = features.stamp_ns;
   world_covariance_ = result.pose_covariance;
-  find_candidates(slot);
+  if (goes_on && !is_judged_)
+    search_on(out);
+  else
+    find_candidates(slot);
+}
+
+void Map::search_on(MapResult& out) {
+  if (to_compare_ > 0)
+    compare_next();
+  else if (!is_judged_)
+    judge(out);
 }
 
 void Map::measure_depth(std::uint16_t slot) {
@@ -185,24 +202,27 @@ void Map::measure_depth(std::uint16_t slot) {
 
 bool Map::settle() {
   MapResult out;
-  while (candidate_count_ > 0) compare_next();
-  if (!is_judged_) judge(out);
+  while (!is_judged_) search_on(out);
   while (!memory_.graph.idle()) memory_.graph.step();
   return out.recognised;
 }
 
 // How much two views differ, by the translation as a share of the scene's depth and by the angle. Below 1
-// they show the same. For views of different parts of the map it is unknown.
-float Map::view_distance(std::uint16_t a, std::uint16_t b) const {
-  if (memory_.graph.node(a).part != memory_.graph.node(b).part) return MapMemory::Neighbour::kUnknown;
-  const Se3& A = memory_.graph.node(a).T_map_keyframe;
-  const Se3& B = memory_.graph.node(b).T_map_keyframe;
-  const double depth = static_cast<double>(std::min(memory_.depths[a], memory_.depths[b]));
+// they show the same.
+float view_distance(const Se3& A, const Se3& B, float depth_m) {
+  const double depth = static_cast<double>(depth_m);
   const double move = (A.t - B.t).squaredNorm() / (kSameViewMove * kSameViewMove * depth * depth);
   // 2 (1 − cos θ) ≈ θ².
   const double cos_turn = 0.5 * (A.R.cwiseProduct(B.R).sum() - 1);
   const double turn = 2 * (1 - cos_turn) / (kSameViewTurn_rad * kSameViewTurn_rad);
   return static_cast<float>(sqrt(std::max(0.0, move + turn)));
+}
+
+// For views of different parts of the map it is unknown.
+float Map::view_distance(std::uint16_t a, std::uint16_t b) const {
+  if (memory_.graph.node(a).part != memory_.graph.node(b).part) return MapMemory::Neighbour::kUnknown;
+  return plvo::view_distance(memory_.graph.node(a).T_map_keyframe, memory_.graph.node(b).T_map_keyframe,
+                             std::min(memory_.depths[a], memory_.depths[b]));
 }
 
 // Finds the neighbour of a node, and makes the node the neighbour of those nodes whose present neighbour is
@@ -245,6 +265,11 @@ void Map::remove(std::uint16_t slot, MapResult& out) {
   memory_.neighbours[slot] = MapMemory::Neighbour();
   for (MapMemory::Neighbour& neighbour : memory_.neighbours)
     if (neighbour.slot == slot) neighbour = MapMemory::Neighbour();  // until it is searched anew
+  drop_candidate(slot);
+  if (slot == searched_) {
+    candidate_count_ = to_compare_ = 0;
+    is_judged_ = true;
+  }
   const auto gone = [slot](const Hypothesis& h) { return h.old_slot == slot || h.new_slot == slot; };
   hypothesis_count_ = static_cast<std::size_t>(
       std::remove_if(hypotheses_.begin(),
@@ -267,29 +292,122 @@ void Map::find_candidates(std::uint16_t slot) {
   }
   const bool is_known = place_is_known(slot);
   const std::span<PlaceCandidate> room(candidates_);
-  FixedVector<PlaceCandidate> best(room.first(is_known ? kCandidatesKnown : kCandidates));
+  FixedVector<PlaceCandidate> best(room.first(is_known ? kFirstCandidates : kVotedCandidates));
   memory_.index.query(all_descriptors(), memory_.features.at(slot).descriptors, memory_.excluded, best);
   candidate_count_ = 0;
   for (const PlaceCandidate& candidate : best)
     if (candidate.score >= (is_known ? kLeastScore : kLeastScoreUnknown)) ++candidate_count_;
+  searched_ = slot;
+  is_promising_ = true;
   is_judged_ = candidate_count_ == 0;
+  to_compare_ = std::min(candidate_count_, kFirstCandidates);
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }
 
-// Compares the latest keyframe with the most promising candidate that is left.
+// While the place is unknown: the views near the pose that the best hypothesis gives or, without one, those
+// with the next most votes are compared before the next judgement.
+void Map::look_further() {
+  is_judged_ = true;
+  if (place_is_known(searched_) || !is_promising_) return;
+  is_promising_ = false;
+  if (const Hypothesis* best = best_hypothesis())
+    add_views_near(pose_after(*best), memory_.graph.node(best->old_slot).part, memory_.depths[searched_]);
+  to_compare_ = std::min(candidate_count_, kMoreCandidates);
+  is_judged_ = to_compare_ == 0;
+}
+
+// The pose in the map that the hypothesis gives the keyframe whose place is searched.
+Se3 Map::pose_after(const Hypothesis& h) const {
+  const Se3 T_map_new = memory_.graph.node(h.old_slot).T_map_keyframe * h.loop.T_old_new;
+  return T_map_new * memory_.graph.node(h.new_slot).T_map_keyframe.inverse() *
+         memory_.graph.node(searched_).T_map_keyframe;
+}
+
+// The nearest ones that were not compared come before the other candidates.
+void Map::add_views_near(const Se3& T_map_camera, std::uint32_t part, float depth_m) {
+  std::array<PlaceCandidate, kMoreCandidates> nearest;
+  std::array<float, kMoreCandidates> distances;
+  distances.fill(kNearView);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < memory_.graph.size(); ++k) {
+    const std::uint16_t slot = memory_.graph.slot_at(k);
+    const PoseGraph::Node& node = memory_.graph.node(slot);
+    if (memory_.excluded[slot] != 0 || node.part != part ||
+        memory_.features.at(slot).points.size() < kLeastPoints)
+      continue;
+    const float distance =
+        plvo::view_distance(T_map_camera, node.T_map_keyframe, std::min(depth_m, memory_.depths[slot]));
+    std::size_t at = count;
+    while (at > 0 && distances[at - 1] > distance) --at;
+    if (at == kMoreCandidates || distance >= kNearView) continue;
+    count = std::min(count + 1, kMoreCandidates);
+    for (std::size_t i = count - 1; i > at; --i) {
+      distances[i] = distances[i - 1];
+      nearest[i] = nearest[i - 1];
+    }
+    distances[at] = distance;
+    nearest[at] = {slot, 0};
+  }
+  for (std::size_t i = count; i-- > 0;) {
+    const std::uint16_t slot = nearest[i].slot;
+    memory_.excluded[slot] = 1;
+    drop_candidate(slot);
+    candidates_[candidate_count_++] = nearest[i];
+  }
+}
+
+void Map::drop_candidate(std::uint16_t slot) {
+  const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_);
+  candidate_count_ = static_cast<std::size_t>(
+      std::remove_if(candidates_.begin(), end, [slot](const PlaceCandidate& c) { return c.slot == slot; }) -
+      candidates_.begin());
+  to_compare_ = std::min(to_compare_, candidate_count_);
+}
+
+// Compares the keyframe with the most promising candidate that is left.
 void Map::compare_next() {
   Hypothesis latest;
-  latest.old_slot = candidates_[--candidate_count_].slot;
-  latest.new_slot = memory_.graph.last();
+  --to_compare_;
+  const PlaceCandidate candidate = candidates_[--candidate_count_];
+  latest.old_slot = candidate.slot;
+  memory_.excluded[latest.old_slot] = 1;
+  latest.new_slot = searched_;
   ++counts_.compared;
-  latest.loop = check_(memory_.features.at(latest.old_slot), memory_.features.at(latest.new_slot), arena_);
-  if (!latest.loop.found || !plausible(latest)) return;
+  Se3 T_new_old;
+  const Hypothesis* guide = candidate.score == 0 ? best_hypothesis() : nullptr;
+  if (guide != nullptr)
+    T_new_old = pose_after(*guide).inverse() * memory_.graph.node(latest.old_slot).T_map_keyframe;
+  latest.loop = check_(memory_.features.at(latest.old_slot), memory_.features.at(latest.new_slot), arena_,
+                       guide != nullptr ? &T_new_old : nullptr);
+  if (latest.loop.found && plausible(latest)) keep(latest);
+  if (to_compare_ == 0 && !may_suffice()) look_further();
+}
+
+void Map::keep(const Hypothesis& hypothesis) {
   ++counts_.accepted;
+  is_promising_ = true;
   if (hypothesis_count_ == kHypotheses) {
     std::move(hypotheses_.begin() + 1, hypotheses_.end(), hypotheses_.begin());
     --hypothesis_count_;
   }
-  hypotheses_[hypothesis_count_++] = latest;
+  hypotheses_[hypothesis_count_++] = hypothesis;
+}
+
+// Whether there are enough hypotheses, if all agree.
+bool Map::may_suffice() const {
+  int inliers = 0;
+  for (const Hypothesis& h : hypotheses()) inliers += h.loop.inliers;
+  return hypothesis_count_ >= kLeastAgreeing && inliers >= kLeastInliersTogether;
+}
+
+// The best hypothesis of the newest keyframe that has any.
+const Map::Hypothesis* Map::best_hypothesis() const {
+  const Hypothesis* best = nullptr;
+  for (const Hypothesis& h : hypotheses())
+    if (h.new_slot == hypotheses().back().new_slot &&
+        (best == nullptr || h.loop.inliers > best->loop.inliers))
+      best = &h;
+  return best;
 }
 
 // Whether the motion lies within the map's own uncertainty: that along the chain between the two keyframes,
@@ -335,27 +453,26 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   return lies_within(boxminus(by_a, by_b), covariance) ? Relation::kAgree : Relation::kContradict;
 }
 
-// Called in the frame after the last comparison of a keyframe, or before the next keyframe. The best of its
-// hypotheses and those that agree with it become loops, if they are enough and no hypothesis contradicts
-// them.
+// Called in the frame after the comparisons, or before the next keyframe. The best of the hypotheses and
+// those that agree with it become loops, if they are enough and no hypothesis contradicts them.
 void Map::judge(MapResult& out) {
   is_judged_ = true;
-  if (hypothesis_count_ == 0) return;
+  const Hypothesis* best = best_hypothesis();
+  if (best == nullptr) return;
   const std::span<Hypothesis> all = std::span(hypotheses_).first(hypothesis_count_);
-  const std::uint16_t newest = all.back().new_slot;
-  const Hypothesis* best = nullptr;
-  for (const Hypothesis& h : all)
-    if (h.new_slot == newest && (best == nullptr || h.loop.inliers > best->loop.inliers)) best = &h;
   int agreeing = 0, inliers = 0;
+  bool contradicted = false;
   std::array<bool, kHypotheses> agrees{};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Relation relation = &all[i] == best ? Relation::kAgree : compare(all[i], *best);
-    if (relation == Relation::kContradict && all[i].loop.inliers >= kRivalShare * best->loop.inliers) return;
+    if (relation == Relation::kContradict && all[i].loop.inliers >= kRivalShare * best->loop.inliers)
+      contradicted = true;
     agrees[i] = relation == Relation::kAgree;
     agreeing += agrees[i] ? 1 : 0;
     inliers += agrees[i] ? all[i].loop.inliers : 0;
   }
-  if (agreeing < kLeastAgreeing || inliers < kLeastInliersTogether) return;
+  if (contradicted) return;
+  if (agreeing < kLeastAgreeing || inliers < kLeastInliersTogether) return look_further();
   const LoopMeasurement& loop = best->loop;
   memory_.graph.join_parts(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance);
   const Vector3& t = memory_.graph.node(best->new_slot).T_map_keyframe.t;

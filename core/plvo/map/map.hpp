@@ -146,7 +146,7 @@ class Map {
     LoopMeasurement loop;
     bool joined = false;  // the graph
   };
-  static constexpr std::size_t kCandidates = 7;
+  static constexpr std::size_t kCandidates = 10;
   static constexpr std::size_t kHypotheses = 24;
 
   void add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
@@ -154,12 +154,21 @@ class Map {
   void remove(std::uint16_t slot, MapResult& out);
   bool place_is_known(std::uint16_t slot) const;
   void find_candidates(std::uint16_t slot);
+  void drop_candidate(std::uint16_t slot);
+  void search_on(MapResult& out);
   void compare_next();
   bool plausible(const Hypothesis& hypothesis) const;
   enum class Relation : std::uint8_t { kAgree, kContradict, kUnrelated };
   Relation compare(const Hypothesis& a, const Hypothesis& b) const;
   Matrix6 between(std::uint16_t a, std::uint16_t b) const;
   void judge(MapResult& out);
+  std::span<const Hypothesis> hypotheses() const { return std::span(hypotheses_).first(hypothesis_count_); }
+  const Hypothesis* best_hypothesis() const;
+  void keep(const Hypothesis& hypothesis);
+  bool may_suffice() const;
+  Se3 pose_after(const Hypothesis& hypothesis) const;
+  void look_further();
+  void add_views_near(const Se3& T_map_camera, std::uint32_t part, float depth_m);
   float view_distance(std::uint16_t a, std::uint16_t b) const;
   void find_neighbour(std::uint16_t slot);
   void measure_depth(std::uint16_t slot);
@@ -175,9 +184,12 @@ class Map {
   std::int64_t keyframe_stamp_ns_ = 0;  // of the latest keyframe
   Se3 T_world_keyframe_;                // as the odometry has it
   Matrix6 world_covariance_ = Matrix6::Zero();
-  std::array<PlaceCandidate, kCandidates> candidates_;  // of the latest keyframe, the next to compare last
+  std::uint16_t searched_ = 0;                          // the keyframe whose place is searched
+  std::array<PlaceCandidate, kCandidates> candidates_;  // for it, the next to compare last
   std::size_t candidate_count_ = 0;
-  bool is_judged_ = true;                           // the latest keyframe's comparisons were judged
+  std::size_t to_compare_ = 0;  // of them, before the next judgement
+  bool is_promising_ = false;   // a hypothesis was found since the last candidates were chosen
+  bool is_judged_ = true;       // the search has ended
   std::array<Hypothesis, kHypotheses> hypotheses_;  // the latest, oldest first
   std::size_t hypothesis_count_ = 0;
   Counts counts_;

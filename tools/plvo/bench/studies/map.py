@@ -19,7 +19,8 @@ PATROLS = [("hall", "constant", 21, 320), ("hall", "varying", 22, 320), ("hall",
 # Tables and picture are of the first six; the others show what a smaller image does.
 ROOMS = [(scene, light, 3, width) for scene, width in (("hall", 320), ("corridor", 320), ("desk", 160)) for light in ("constant", "varying")]
 SMALL = [(scene, light, 3, 160) for scene in ("hall", "corridor") for light in ("constant", "varying")]
-CARRIED = [("hall", "constant", 3, 240), ("desk", "constant", 3, 160), ("desk", "varying", 3, 160), ("corridor", "constant", 3, 160)]
+CARRIED = [(scene, light, 3, 320) for scene in ("hall", "desk", "corridor") for light in ("constant", "varying")] + [
+    ("hall", "constant", 3, 240), ("desk", "constant", 3, 160), ("desk", "varying", 3, 160), ("corridor", "constant", 3, 160)]
 COSTS = [("hall", "constant", 3, 240), ("staircase", "constant", 3, 160)]
 SOAKS = [("desk", "constant", 3, 160)]
 AMOUNTS = {"patrol": (3000, 100), "soak": (100000, 2000), "carried": (50, 3), "recall": (10, 2), "cost": (200, 60)}
@@ -195,24 +196,26 @@ must find the place. It is found in the first frame in which the map knows its p
 - **wrong**: a loop that is farther from the truth than 0.15 m or 0.1 rad.
 - **sure too early**: trials in which the stated pose was that far from the truth when the place was found, and for how many frames at most.
 - **error**: distance of the camera in the map from the truth, of those that were found; with the drift of the map.""")
-    rows, total, in_ten, bad = [], 0, 0, 0
+    rows, bad, sums = [], 0, {}
     for room, one in found:
+        size = f"{room[3]}×{room[3] * 3 // 4}"
         for kind, how in (("dark", "carried"), ("anew", "switched on")):
             some = one[kind]
             seen = sorted(trial[0] for trial in some if trial[0])
             early = [trial for trial in some if trial[4]]
             errors = [trial[5] for trial in some if trial[0]]
-            total += len(some)
-            in_ten += sum(n <= 10 for n in seen)
+            total, in_ten = sums.get(size, (0, 0))
+            sums[size] = total + len(some), in_ten + sum(n <= 10 for n in seen)
             bad += sum(trial[1] > 0 for trial in some)
-            rows.append([room[0], room[1], how, f"{room[3]}×{room[3] * 3 // 4}", f"{one['keyframes']}",
+            rows.append([room[0], room[1], how, size, f"{one['keyframes']}",
                          *(percent(sum(n <= most for n in seen), len(some)) for most in (1, 6, 10, 30)),
                          f"{statistics.median(seen):.0f}" if seen else "–",
                          f"{sum(trial[1] > 0 for trial in some)}", f"{len(early)}" + (f" ({max(trial[4] for trial in early)})" if early else ""),
                          f"{1000 * statistics.median(errors):.0f} / {1000 * max(errors):.0f}" if errors else "–"])
     table(["room", "light", "how", "image", "keyframes", "found in frame 1", "within 6", "within 10", "within 30", "median frame", "wrong",
            "sure too early (frames)", "error: median / max mm"], rows, 3)
-    print(f"\nOf {total} trials {in_ten} ({percent(in_ten, total)}) found the place within 10 frames; in {bad} a wrong loop joined.")
+    each = "; ".join(f"{in_ten} of {total} ({percent(in_ten, total)}) at {size}" for size, (total, in_ten) in sums.items())
+    print(f"\nFound within 10 frames: {each}. In {bad} trials a wrong loop joined.")
 
 
 def soak(found, amount):
