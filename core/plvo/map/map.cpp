@@ -19,9 +19,9 @@ constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
 // While the place is unknown, the score of a single such descriptor suffices.
 constexpr std::uint32_t kLeastScoreUnknown = PlaceIndex::kWholeVote;
 // A keyframe is compared with this many views that have the most votes, then judged. While the place is
-// unknown, it is compared with more, until the place is recognised or there are no more.
-constexpr std::size_t kFirstCandidates = 4, kVotedCandidates = 7, kMoreCandidates = 3;
-// Views near a hypothesis differ from it by less than this; see view_distance().
+// unknown, more views follow, until the place is recognised or the latest ones show nothing.
+constexpr std::size_t kFirstCandidates = 4;
+// Views near a hypothesis differ from it by less than this; see view_distance_between().
 constexpr float kNearView = 2;
 // A view with fewer points than this is not worth a comparison.
 constexpr std::size_t kLeastPoints = 20;
@@ -35,7 +35,7 @@ constexpr double kCovarianceSlack = 4;
 // Variances of the motion between two worlds, where nothing is known of it (m², rad²).
 constexpr double kUnknownPosition_m2 = 1e4, kUnknownRotation_rad2 = 10;
 // Two views are of the same place if the camera moved by less than this share of the scene's depth, or turned
-// by less than this angle; see view_distance().
+// by less than this angle; see view_distance_between().
 constexpr double kSameViewMove = 0.5, kSameViewTurn_rad = 0.5;
 // A motion more uncertain than this counts as unobserved: keyframes before it are not recent, and two
 // hypotheses whose difference is more uncertain neither agree nor contradict.
@@ -48,6 +48,17 @@ constexpr int kRefreshedPerFrame = 2;
 // Whether δ is within a covariance.
 bool lies_within(const Vector6& delta, const Matrix6& covariance) {
   return mahalanobis_squared<6>(delta, covariance) <= kCovarianceSlack * kMostPlausibleMotion;
+}
+
+// How much two views differ, by the translation as a share of the scene's depth and by the angle. Below 1
+// they show the same.
+float view_distance_between(const Se3& A, const Se3& B, float depth_m) {
+  const double depth = static_cast<double>(depth_m);
+  const double move = (A.t - B.t).squaredNorm() / (kSameViewMove * kSameViewMove * depth * depth);
+  // 2 (1 − cos θ) ≈ θ².
+  const double cos_turn = 0.5 * (A.R.cwiseProduct(B.R).sum() - 1);
+  const double turn = 2 * (1 - cos_turn) / (kSameViewTurn_rad * kSameViewTurn_rad);
+  return static_cast<float>(sqrt(std::max(0.0, move + turn)));
 }
 
 }  // namespace
@@ -146,8 +157,8 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                                     inverse_covariance(T_world_keyframe_, world_covariance_),
                                     view.T_world_camera, result.pose_covariance);
   }
-  // While the place is unknown, a search goes on to its end. Otherwise that of the latest keyframe counts
-  // more.
+  // While the place is unknown, a search goes on to its end. Otherwise the next keyframe begins one of its
+  // own.
   const bool goes_on = !is_judged_ && !place_is_known(searched_) && !exceeds(covariance, kObservedMotion);
   if (!is_judged_ && !goes_on) judge(out);
   // No observed motion leads to the hypotheses from before.
@@ -176,10 +187,12 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   follows_camera_ = true;
   keyframe_stamp_ns_ = features.stamp_ns;
   world_covariance_ = result.pose_covariance;
-  if (goes_on && !is_judged_)
+  if (goes_on && !is_judged_) {
+    memory_.excluded[slot] = 1;
     search_on(out);
-  else
+  } else {
     find_candidates(slot);
+  }
 }
 
 void Map::search_on(MapResult& out) {
@@ -207,22 +220,11 @@ bool Map::settle() {
   return out.recognised;
 }
 
-// How much two views differ, by the translation as a share of the scene's depth and by the angle. Below 1
-// they show the same.
-float view_distance(const Se3& A, const Se3& B, float depth_m) {
-  const double depth = static_cast<double>(depth_m);
-  const double move = (A.t - B.t).squaredNorm() / (kSameViewMove * kSameViewMove * depth * depth);
-  // 2 (1 − cos θ) ≈ θ².
-  const double cos_turn = 0.5 * (A.R.cwiseProduct(B.R).sum() - 1);
-  const double turn = 2 * (1 - cos_turn) / (kSameViewTurn_rad * kSameViewTurn_rad);
-  return static_cast<float>(sqrt(std::max(0.0, move + turn)));
-}
-
-// For views of different parts of the map it is unknown.
+// Unknown for views of different parts of the map.
 float Map::view_distance(std::uint16_t a, std::uint16_t b) const {
   if (memory_.graph.node(a).part != memory_.graph.node(b).part) return MapMemory::Neighbour::kUnknown;
-  return plvo::view_distance(memory_.graph.node(a).T_map_keyframe, memory_.graph.node(b).T_map_keyframe,
-                             std::min(memory_.depths[a], memory_.depths[b]));
+  return view_distance_between(memory_.graph.node(a).T_map_keyframe, memory_.graph.node(b).T_map_keyframe,
+                               std::min(memory_.depths[a], memory_.depths[b]));
 }
 
 // Finds the neighbour of a node, and makes the node the neighbour of those nodes whose present neighbour is
@@ -336,7 +338,7 @@ void Map::add_views_near(const Se3& T_map_camera, std::uint32_t part, float dept
         memory_.features.at(slot).points.size() < kLeastPoints)
       continue;
     const float distance =
-        plvo::view_distance(T_map_camera, node.T_map_keyframe, std::min(depth_m, memory_.depths[slot]));
+        view_distance_between(T_map_camera, node.T_map_keyframe, std::min(depth_m, memory_.depths[slot]));
     std::size_t at = count;
     while (at > 0 && distances[at - 1] > distance) --at;
     if (at == kMoreCandidates || distance >= kNearView) continue;
