@@ -2,7 +2,6 @@
 #include "plvo/odometry/config.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -64,7 +63,10 @@ class RangeCheck {
   }
 
   // The number of at most six decimals that a float stands for.
-  static double decimal(float bound) { return std::floor(static_cast<double>(bound) * 1e6 + 0.5) / 1e6; }
+  [[gnu::noinline]] static double decimal(float bound) {
+    constexpr double kRounds = 6755399441055744.0;  // 1.5 · 2⁵²: a sum with it is a whole number
+    return (static_cast<double>(bound) * 1e6 + kRounds - kRounds) / 1e6;
+  }
 
   // Appends the bound in decimal, with up to six decimals. It does without the C library. It
   // works in doubles because small processors divide those in hardware, but 64-bit integers in a long

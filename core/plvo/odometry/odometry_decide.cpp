@@ -76,7 +76,7 @@ void decide_start(const Window& window, const GravityFilter& gravity, const Curr
   if (frame.prior.gravity) return;
   decision.outcome = Decision::Outcome::kWait;
   decision.status = {StatusCode::kNotFound,
-                     "waiting for gravity: Config::level_world needs gravity in the first frame's prior"};
+                     "waiting for gravity in the first frame's prior (Config::level_world)"};
 }
 
 // Which references stay, by the inliers of the last estimate. A reference with more features than the budget
