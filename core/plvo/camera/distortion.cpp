@@ -140,7 +140,8 @@ Status Distortion::validate(double radius) const {
               "the distortion coefficients k1 k2 p1 p2 k3 (k4 k5 k6) must be numbers"};
   if (model == LensModel::kEquidistant) {
     if (p1 != 0 || p2 != 0 || k5 != 0 || k6 != 0)
-      return {StatusCode::kInvalidArgument, "an equidistant lens has k1 k2 k3 k4 alone"};
+      return {StatusCode::kInvalidArgument,
+              "an equidistant lens has k1 k2 k3 k4 alone; p1 p2 k5 k6 must be 0"};
     return check_equidistant(*this, radius);
   }
   return is_plumb_bob() ? Status() : check_rational(*this, radius);

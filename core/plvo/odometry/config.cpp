@@ -15,11 +15,11 @@
 namespace plvo {
 namespace {
 
-// A bounded entry of a group of settings. Both bounds are allowed; NaN is not.
+// A bounded entry of a group of settings. Both bounds are allowed; NaN is not. The names of a group's entries
+// stand apart, each with a zero behind it: a table with pointers would be no constant in a shared library.
 struct Range {
   enum class Type : std::uint8_t { kDouble, kInt, kNanoseconds };  // bounds of the last in seconds
 
-  const char* entry;
   std::uint16_t offset;  // in the group, bytes
   Type type;
   float low, high;
@@ -36,14 +36,14 @@ double value_at(const std::byte* group, const Range& range) {
 class RangeCheck {
  public:
   template <typename Group>
-  void check(const char* name, const Group& group, std::span<const Range> ranges) {
+  void check(const char* name, const Group& group, const char* entries, std::span<const Range> ranges) {
     static_assert(std::is_standard_layout_v<Group>);
-    check_bytes(name, reinterpret_cast<const std::byte*>(&group), ranges);
+    check_bytes(name, reinterpret_cast<const std::byte*>(&group), entries, ranges);
   }
   const Status& status() const { return status_; }
 
  private:
-  [[gnu::noinline]] void check_bytes(const char* name, const std::byte* group,
+  [[gnu::noinline]] void check_bytes(const char* name, const std::byte* group, const char* entry,
                                      std::span<const Range> ranges) {
     for (const Range& range : ranges) {
       const double value = range.type == Range::Type::kDouble ? value_at<double>(group, range)
@@ -51,10 +51,13 @@ class RangeCheck {
                                                               : value_at<std::int64_t>(group, range);
       const double unit = range.type == Range::Type::kNanoseconds ? 1e9 : 1;
       const double low = unit * decimal(range.low), high = unit * decimal(range.high);
+      const char* const its_name = entry;
+      while (*entry++ != 0) {
+      }
       if (!status_.ok() || (value >= low && value <= high)) continue;
       status_ = Status(StatusCode::kInvalidArgument, "config: ")
                     .append(name)
-                    .append(range.entry)
+                    .append(its_name)
                     .append(" must lie between ");
       append_bound(low);
       status_.append(" and ");
@@ -88,87 +91,132 @@ class RangeCheck {
   Status status_;
 };
 
+constexpr char kDepthNoiseEntries[] =
+    "c1\0"
+    "c2\0"
+    "c3\0"
+    "floor_m\0"
+    "registration_px\0";
 constexpr Range kDepthNoiseRanges[] = {
-    {"c1", offsetof(DepthNoise, c1), Range::Type::kDouble, -1, 1},
-    {"c2", offsetof(DepthNoise, c2), Range::Type::kDouble, -1, 1},
-    {"c3", offsetof(DepthNoise, c3), Range::Type::kDouble, -1, 1},
-    {"floor_m", offsetof(DepthNoise, floor_m), Range::Type::kDouble, 1e-6F, 1},
-    {"registration_px", offsetof(DepthNoise, registration_px), Range::Type::kDouble, 0, 20},
+    {offsetof(DepthNoise, c1), Range::Type::kDouble, -1, 1},
+    {offsetof(DepthNoise, c2), Range::Type::kDouble, -1, 1},
+    {offsetof(DepthNoise, c3), Range::Type::kDouble, -1, 1},
+    {offsetof(DepthNoise, floor_m), Range::Type::kDouble, 1e-6F, 1},
+    {offsetof(DepthNoise, registration_px), Range::Type::kDouble, 0, 20},
 };
+constexpr char kPointsEntries[] =
+    "sigma_px\0"
+    "depth_reach_px\0";
 constexpr Range kPointsRanges[] = {
-    {"sigma_px", offsetof(PointConfig, sigma_px), Range::Type::kDouble, 0.01F, 20},
-    {"depth_reach_px", offsetof(PointConfig, depth_reach_px), Range::Type::kInt, 0, DepthSampler::kMaxRadius},
+    {offsetof(PointConfig, sigma_px), Range::Type::kDouble, 0.01F, 20},
+    {offsetof(PointConfig, depth_reach_px), Range::Type::kInt, 0, DepthSampler::kMaxRadius},
 };
+constexpr char kNoiseEntries[] =
+    "learning_rate\0"
+    "angular_rate_error_rad_per_s\0"
+    "shared_depth_m\0"
+    "point_correlation\0"
+    "line_correlation\0"
+    "surface_correlation\0"
+    "common_mode_share\0";
 constexpr Range kNoiseRanges[] = {
-    {"learning_rate", offsetof(NoiseConfig, learning_rate), Range::Type::kDouble, 0, 0.5F},
-    {"angular_rate_error_rad_per_s", offsetof(NoiseConfig, angular_rate_error_rad_per_s),
-     Range::Type::kDouble, 0, 10},
-    {"shared_depth_m", offsetof(NoiseConfig, shared_depth_m), Range::Type::kDouble, 0, 1},
-    {"point_correlation", offsetof(NoiseConfig, point_correlation), Range::Type::kDouble, 0, 1},
-    {"line_correlation", offsetof(NoiseConfig, line_correlation), Range::Type::kDouble, 0, 1},
-    {"surface_correlation", offsetof(NoiseConfig, surface_correlation), Range::Type::kDouble, 0, 1},
-    {"common_mode_share", offsetof(NoiseConfig, common_mode_share), Range::Type::kDouble, 0, 1},
+    {offsetof(NoiseConfig, learning_rate), Range::Type::kDouble, 0, 0.5F},
+    {offsetof(NoiseConfig, angular_rate_error_rad_per_s), Range::Type::kDouble, 0, 10},
+    {offsetof(NoiseConfig, shared_depth_m), Range::Type::kDouble, 0, 1},
+    {offsetof(NoiseConfig, point_correlation), Range::Type::kDouble, 0, 1},
+    {offsetof(NoiseConfig, line_correlation), Range::Type::kDouble, 0, 1},
+    {offsetof(NoiseConfig, surface_correlation), Range::Type::kDouble, 0, 1},
+    {offsetof(NoiseConfig, common_mode_share), Range::Type::kDouble, 0, 1},
 };
+constexpr char kLinesEntries[] =
+    "sample_spacing_px\0"
+    "min_agreement\0"
+    "sigma_p_px\0"
+    "inlier_chi_square\0"
+    "side_reach_px\0"
+    "depth_correlation_px\0"
+    "transverse_floor_px\0";
 constexpr Range kLinesRanges[] = {
-    {"sample_spacing_px", offsetof(Line3dConfig, sample_spacing_px), Range::Type::kDouble, 1, 1000},
-    {"min_agreement", offsetof(Line3dConfig, min_agreement), Range::Type::kDouble, 0, 1},
-    {"sigma_p_px", offsetof(Line3dConfig, sigma_p_px), Range::Type::kDouble, 0.01F, 20},
-    {"inlier_chi_square", offsetof(Line3dConfig, inlier_chi_square), Range::Type::kDouble, 0.1F, 100},
-    {"side_reach_px", offsetof(Line3dConfig, side_reach_px), Range::Type::kInt, 0, kMaxSideReach},
-    {"depth_correlation_px", offsetof(Line3dConfig, depth_correlation_px), Range::Type::kDouble, 0.01F, 1000},
-    {"transverse_floor_px", offsetof(Line3dConfig, transverse_floor_px), Range::Type::kDouble, 0, 20},
+    {offsetof(Line3dConfig, sample_spacing_px), Range::Type::kDouble, 1, 1000},
+    {offsetof(Line3dConfig, min_agreement), Range::Type::kDouble, 0, 1},
+    {offsetof(Line3dConfig, sigma_p_px), Range::Type::kDouble, 0.01F, 20},
+    {offsetof(Line3dConfig, inlier_chi_square), Range::Type::kDouble, 0.1F, 100},
+    {offsetof(Line3dConfig, side_reach_px), Range::Type::kInt, 0, kMaxSideReach},
+    {offsetof(Line3dConfig, depth_correlation_px), Range::Type::kDouble, 0.01F, 1000},
+    {offsetof(Line3dConfig, transverse_floor_px), Range::Type::kDouble, 0, 20},
 };
+constexpr char kMotionEntries[] =
+    "max_ransac_iterations\0"
+    "min_inliers\0"
+    "max_sigma_m\0"
+    "max_sigma_rad\0";
 constexpr Range kMotionRanges[] = {
-    {"max_ransac_iterations", offsetof(MotionConfig, max_ransac_iterations), Range::Type::kInt, 1, 100000},
-    {"min_inliers", offsetof(MotionConfig, min_inliers), Range::Type::kInt, 3, 10000},
-    {"max_sigma_m", offsetof(MotionConfig, max_sigma_m), Range::Type::kDouble, 1e-6F, 100},
-    {"max_sigma_rad", offsetof(MotionConfig, max_sigma_rad), Range::Type::kDouble, 1e-6F, 10},
+    {offsetof(MotionConfig, max_ransac_iterations), Range::Type::kInt, 1, 100000},
+    {offsetof(MotionConfig, min_inliers), Range::Type::kInt, 3, 10000},
+    {offsetof(MotionConfig, max_sigma_m), Range::Type::kDouble, 1e-6F, 100},
+    {offsetof(MotionConfig, max_sigma_rad), Range::Type::kDouble, 1e-6F, 10},
 };
+constexpr char kReferencesEntries[] =
+    "keyframe_inlier_ratio\0"
+    "max_lost_s\0"
+    "process_noise_m_per_s\0"
+    "process_noise_rad_per_s\0";
 constexpr Range kReferencesRanges[] = {
-    {"keyframe_inlier_ratio", offsetof(ReferenceConfig, keyframe_inlier_ratio), Range::Type::kDouble, 0, 1},
-    {"max_lost_s", offsetof(ReferenceConfig, max_lost_s), Range::Type::kDouble, 0, 1000000},
-    {"process_noise_m_per_s", offsetof(ReferenceConfig, process_noise_m_per_s), Range::Type::kDouble, 0, 100},
-    {"process_noise_rad_per_s", offsetof(ReferenceConfig, process_noise_rad_per_s), Range::Type::kDouble, 0,
-     100},
+    {offsetof(ReferenceConfig, keyframe_inlier_ratio), Range::Type::kDouble, 0, 1},
+    {offsetof(ReferenceConfig, max_lost_s), Range::Type::kDouble, 0, 1000000},
+    {offsetof(ReferenceConfig, process_noise_m_per_s), Range::Type::kDouble, 0, 100},
+    {offsetof(ReferenceConfig, process_noise_rad_per_s), Range::Type::kDouble, 0, 100},
 };
+constexpr char kBudgetEntries[] =
+    "frame_ns\0"
+    "patience_frames\0"
+    "spare_share\0";
 constexpr Range kBudgetRanges[] = {
-    {"frame_ns", offsetof(BudgetConfig, frame_ns), Range::Type::kNanoseconds, 0, 1000},
-    {"patience_frames", offsetof(BudgetConfig, patience_frames), Range::Type::kInt, 1, 1000000},
-    {"spare_share", offsetof(BudgetConfig, spare_share), Range::Type::kDouble, 0, 1},
+    {offsetof(BudgetConfig, frame_ns), Range::Type::kNanoseconds, 0, 1000},
+    {offsetof(BudgetConfig, patience_frames), Range::Type::kInt, 1, 1000000},
+    {offsetof(BudgetConfig, spare_share), Range::Type::kDouble, 0, 1},
 };
 
+constexpr char kLimitsEntries[] =
+    "width\0"
+    "height\0"
+    "keypoints\0"
+    "segments\0"
+    "references\0"
+    "line_bands\0"
+    "cores\0"
+    "surfaces\0";
 constexpr Range kLimitsRanges[] = {
-    {"width", offsetof(Limits, width), Range::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
-    {"height", offsetof(Limits, height), Range::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
-    {"keypoints", offsetof(Limits, keypoints), Range::Type::kInt, 10, 60000},
-    {"segments", offsetof(Limits, segments), Range::Type::kInt, 1, 60000},
-    {"references", offsetof(Limits, references), Range::Type::kInt, 1, kMaxReferences},
-    {"line_bands", offsetof(Limits, line_bands), Range::Type::kInt, 1, 8},
-    {"cores", offsetof(Limits, cores), Range::Type::kInt, 1, 2},
-    {"surfaces", offsetof(Limits, surfaces), Range::Type::kInt, 0, 1000},
+    {offsetof(Limits, width), Range::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
+    {offsetof(Limits, height), Range::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
+    {offsetof(Limits, keypoints), Range::Type::kInt, 10, 60000},
+    {offsetof(Limits, segments), Range::Type::kInt, 1, 60000},
+    {offsetof(Limits, references), Range::Type::kInt, 1, kMaxReferences},
+    {offsetof(Limits, line_bands), Range::Type::kInt, 1, 8},
+    {offsetof(Limits, cores), Range::Type::kInt, 1, 2},
+    {offsetof(Limits, surfaces), Range::Type::kInt, 0, 1000},
 };
 
 }  // namespace
 
 Status Limits::validate() const {
   RangeCheck ranges;
-  ranges.check("Limits::", *this, kLimitsRanges);
+  ranges.check("Limits::", *this, kLimitsEntries, kLimitsRanges);
   const int most_kept = std::min(kMostKeptKeyframes, kMostOtherFrames - references);
-  const Range kept{"kept_keyframes", offsetof(Limits, kept_keyframes), Range::Type::kInt, 0,
-                   static_cast<float>(most_kept)};
-  ranges.check("Limits::", *this, {&kept, 1});
+  const Range kept{offsetof(Limits, kept_keyframes), Range::Type::kInt, 0, static_cast<float>(most_kept)};
+  ranges.check("Limits::", *this, "kept_keyframes", {&kept, 1});
   return ranges.status();
 }
 
 Status Config::validate() const {
   RangeCheck ranges;
-  ranges.check("depth_noise.", depth_noise, kDepthNoiseRanges);
-  ranges.check("points.", points, kPointsRanges);
-  ranges.check("lines.", lines, kLinesRanges);
-  ranges.check("noise.", noise, kNoiseRanges);
-  ranges.check("references.", references, kReferencesRanges);
-  ranges.check("budget.", budget, kBudgetRanges);
-  ranges.check("motion.", motion, kMotionRanges);
+  ranges.check("depth_noise.", depth_noise, kDepthNoiseEntries, kDepthNoiseRanges);
+  ranges.check("points.", points, kPointsEntries, kPointsRanges);
+  ranges.check("lines.", lines, kLinesEntries, kLinesRanges);
+  ranges.check("noise.", noise, kNoiseEntries, kNoiseRanges);
+  ranges.check("references.", references, kReferencesEntries, kReferencesRanges);
+  ranges.check("budget.", budget, kBudgetEntries, kBudgetRanges);
+  ranges.check("motion.", motion, kMotionEntries, kMotionRanges);
   return ranges.status();
 }
 
