@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <vector>
 
 #include "plvo/base/random.hpp"
@@ -264,6 +265,38 @@ TEST(PoseGraph, OnlyNodesWhosePlaceIsUnknownMove) {
     EXPECT_LT(boxminus(after[k], expected).norm(), k < 15 ? 1e-300 : 1e-9) << k;
     EXPECT_FALSE(graph.is_uncertain(slot(k), {.position_m2 = 0.05, .orientation_rad2 = 0.05})) << k;
   }
+}
+
+// Two losses, each with an error. Together they have that of the later place, and each takes its share.
+TEST(PoseGraph, EqualLossesShareTheDisplacement) {
+  constexpr VarianceBounds known{.position_m2 = 1, .orientation_rad2 = 1};
+  std::vector<Se3> truth;
+  for (int k = 0; k < 20; ++k) truth.push_back({Matrix3::Identity(), {1.0 * k, 0, 0}});
+  Graph g(20);
+  const auto slot = [&](std::size_t k) { return g.graph.slot_at(k); };
+  const Vector6 error = (Vector6() << 0.2, 0.3, 0, 0, 0, 0.2).finished();
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const Se3 motion = k == 0 ? truth[0] : truth[k - 1].inverse() * truth[k];
+    const bool is_lost = k == 5 || k == 15;
+    g.graph.append(is_lost ? boxplus(motion, error) : motion,
+                   is_lost ? covariance(1, 0.5) : covariance(0.001, 0.001));
+  }
+  const auto worst_turn = [&] {
+    double worst = 0;
+    for (std::size_t k = 5; k < 15; ++k)
+      worst = std::max(worst, boxminus(g.graph.node(slot(k)).T_map_keyframe, truth[k]).tail<3>().norm());
+    return worst;
+  };
+  EXPECT_NEAR(worst_turn(), 0.2, 1e-6);
+  g.graph.move_unknown(slot(2), slot(17), truth[2].inverse() * truth[17], covariance(0.001, 0.001), known);
+  EXPECT_LT(worst_turn(), 0.1);
+  for (std::size_t k = 15; k < 20; ++k)
+    EXPECT_LT(boxminus(g.graph.node(slot(k)).T_map_keyframe, truth[k]).norm(), 1e-6) << k;
+  // It is where the solution begins, and nearly where it ends.
+  const double before = worst_turn();
+  g.graph.add_loop(slot(2), slot(17), truth[2].inverse() * truth[17], covariance(0.001, 0.001));
+  g.solve();
+  EXPECT_NEAR(worst_turn(), before, 0.02);
 }
 
 TEST(PoseGraph, TheCovarianceIsAtLeastTheMarginalOfTheDenseProblem) {

@@ -15,6 +15,10 @@ constexpr double kMotionFloor = 1e-8;
 constexpr double kGainShare = 1e-8, kGainEnough = 1e-6;
 // Another linearisation follows where a pose moved by more than this (m, rad).
 constexpr double kGraphMoved = 1e-3;
+// Motions share a displacement if their generalised variance is this share of the largest: a tenth in each of
+// the six variances.
+constexpr double kComparable = 1e-6;
+constexpr int kSharingRounds = 5;
 
 Se3 displacement(const Vector6& x) { return {rotation_exp(x.tail<3>()), x.head<3>()}; }
 
@@ -143,14 +147,46 @@ void PoseGraph::move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b,
   std::size_t first = newer.position;
   if (!is_uncertain(order_[first], known)) return;
   double least_certain = generalised_variance(at(first).motion_covariance);
-  for (std::size_t k = first; k > older.position && is_uncertain(order_[k], known); --k)
+  std::size_t begin = first;  // of the uncertain nodes
+  for (std::size_t k = first; k > older.position && is_uncertain(order_[k], known); begin = k--)
     if (const double variance = generalised_variance(at(k).motion_covariance); variance > least_certain) {
       first = k;
       least_certain = variance;
     }
   const Motion motion = directed(in_order, T_a_b, covariance);
+  share_out(older, newer, motion.T, begin, kComparable * least_certain);
   place(older, newer, motion.T, motion.covariance,
         [first](const Node& node) { return node.position >= first; });
+}
+
+// The unobserved motions between two nodes share the displacement as in the solution of a graph that has no
+// other loop: y = C (Σ C)⁻¹ r. Each round is a linearisation.
+void PoseGraph::share_out(const Node& older, const Node& newer, const Se3& T_older_newer, std::size_t begin,
+                          double least_variance) {
+  const auto shares = [&](const Node& node) {
+    return node.position <= newer.position && generalised_variance(node.motion_covariance) >= least_variance;
+  };
+  while (begin < newer.position && !shares(at(begin))) ++begin;
+  for (int round = 0; round < kSharingRounds; ++round) {
+    Matrix6 sum = Matrix6::Zero();
+    for (std::size_t k = begin; k <= newer.position; ++k) {
+      Node& node = at(k);
+      if (!shares(node)) continue;
+      node.C = motion_in_map(at(k - 1).T_map_keyframe, node.T_previous_keyframe, node.motion_covariance);
+      sum += node.C;
+    }
+    Cholesky<6> cholesky;
+    if (!cholesky.factor(sum)) return;
+    const Vector6 force =
+        cholesky.solve(difference(older.T_map_keyframe * T_older_newer * newer.T_map_keyframe.inverse()));
+    Vector6 x = Vector6::Zero();
+    for (std::size_t k = begin; k < size_; ++k) {
+      Node& node = at(k);
+      if (shares(node)) x += node.C * force;
+      node.T_map_keyframe = displacement(x) * node.T_map_keyframe;
+      node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
+    }
+  }
 }
 
 // Moves the nodes that `is_moved` selects, as a whole, so that `moves` is where the motion from `stays` puts

@@ -95,8 +95,9 @@ class PoseGraph {
   // Whether the pose of a node relative to the first one is more uncertain than a known one may be.
   bool is_uncertain(std::uint16_t slot, const VarianceBounds& known) const;
   // Does nothing unless the later node is uncertain. Otherwise it finds the least certain motion among the
-  // uncertain nodes that end with the later node. All nodes from that motion to the end of the chain move as
-  // a whole, so that the later node is where T_a_b puts it. The solution would need many steps for this.
+  // uncertain nodes that end with the later node. It and the motions that are about as uncertain share the
+  // displacement that puts the later node where T_a_b has it; the nodes between them and to the end of the
+  // chain move as wholes. The solution would need many steps for this.
   void move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance,
                     const VarianceBounds& known);
   // Adds a measured motion. If there is no room, it replaces the most uncertain loop.
@@ -133,6 +134,8 @@ class PoseGraph {
   bool apply();
   void relax(Node& node, const Node& from, const Se3& T_from_node, const Matrix6& between) const;
   void relax_along_chain();
+  void share_out(const Node& older, const Node& newer, const Se3& T_older_newer, std::size_t begin,
+                 double least_variance);
   template <typename IsMoved>
   void place(const Node& stays, Node& moves, const Se3& T_stays_moves, const Matrix6& of_motion,
              const IsMoved& is_moved);
