@@ -61,6 +61,13 @@ float view_distance_between(const Se3& A, const Se3& B, float depth_m) {
   return static_cast<float>(sqrt(std::max(0.0, move + turn)));
 }
 
+// Removes the elements among the first `count` for which `is_gone` holds; the others keep their order.
+template <typename Array, typename IsGone>
+void remove_those(Array& array, std::size_t& count, const IsGone& is_gone) {
+  const auto end = array.begin() + static_cast<std::ptrdiff_t>(count);
+  count = static_cast<std::size_t>(std::remove_if(array.begin(), end, is_gone) - array.begin());
+}
+
 }  // namespace
 
 Status Map::init(std::span<std::byte> memory, const CameraModel& camera, const Config& config,
@@ -159,10 +166,11 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   }
   // While the place is unknown, a search goes on to its end. Otherwise the next keyframe begins one of its
   // own.
-  const bool goes_on = !is_judged_ && !place_is_known(searched_) && !exceeds(covariance, kObservedMotion);
+  const bool is_observed = !exceeds(covariance, kObservedMotion);
+  const bool goes_on = !is_judged_ && is_observed && !place_is_known(searched_);
   if (!is_judged_ && !goes_on) judge(out);
   // No observed motion leads to the hypotheses from before.
-  if (exceeds(covariance, kObservedMotion)) hypothesis_count_ = 0;
+  if (!is_observed) hypothesis_count_ = 0;
   // Read before a keyframe is removed, because that may be the latest one.
   const bool begins_part = memory_.graph.size() == 0 || !follows_camera_;
   const std::uint32_t part =
@@ -273,10 +281,7 @@ void Map::remove(std::uint16_t slot, MapResult& out) {
     is_judged_ = true;
   }
   const auto gone = [slot](const Hypothesis& h) { return h.old_slot == slot || h.new_slot == slot; };
-  hypothesis_count_ = static_cast<std::size_t>(
-      std::remove_if(hypotheses_.begin(),
-                     hypotheses_.begin() + static_cast<std::ptrdiff_t>(hypothesis_count_), gone) -
-      hypotheses_.begin());
+  remove_those(hypotheses_, hypothesis_count_, gone);
 }
 
 bool Map::place_is_known(std::uint16_t slot) const {
@@ -359,10 +364,7 @@ void Map::add_views_near(const Se3& T_map_camera, std::uint32_t part, float dept
 }
 
 void Map::drop_candidate(std::uint16_t slot) {
-  const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_);
-  candidate_count_ = static_cast<std::size_t>(
-      std::remove_if(candidates_.begin(), end, [slot](const PlaceCandidate& c) { return c.slot == slot; }) -
-      candidates_.begin());
+  remove_those(candidates_, candidate_count_, [slot](const PlaceCandidate& c) { return c.slot == slot; });
   to_compare_ = std::min(to_compare_, candidate_count_);
 }
 
@@ -376,6 +378,7 @@ void Map::compare_next() {
   latest.new_slot = searched_;
   ++counts_.compared;
   Se3 T_new_old;
+  // A view that a hypothesis led to has no votes.
   const Hypothesis* guide = candidate.score == 0 ? best_hypothesis() : nullptr;
   if (guide != nullptr)
     T_new_old = pose_after(*guide).inverse() * memory_.graph.node(latest.old_slot).T_map_keyframe;
@@ -463,17 +466,14 @@ void Map::judge(MapResult& out) {
   if (best == nullptr) return;
   const std::span<Hypothesis> all = std::span(hypotheses_).first(hypothesis_count_);
   int agreeing = 0, inliers = 0;
-  bool contradicted = false;
   std::array<bool, kHypotheses> agrees{};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Relation relation = &all[i] == best ? Relation::kAgree : compare(all[i], *best);
-    if (relation == Relation::kContradict && all[i].loop.inliers >= kRivalShare * best->loop.inliers)
-      contradicted = true;
+    if (relation == Relation::kContradict && all[i].loop.inliers >= kRivalShare * best->loop.inliers) return;
     agrees[i] = relation == Relation::kAgree;
     agreeing += agrees[i] ? 1 : 0;
     inliers += agrees[i] ? all[i].loop.inliers : 0;
   }
-  if (contradicted) return;
   if (agreeing < kLeastAgreeing || inliers < kLeastInliersTogether) return look_further();
   const LoopMeasurement& loop = best->loop;
   memory_.graph.join_parts(best->old_slot, best->new_slot, loop.T_old_new, loop.covariance);

@@ -147,7 +147,8 @@ class Map {
     bool joined = false;  // the graph
   };
   // Candidates by votes; views near a hypothesis that are added at a time.
-  static constexpr std::size_t kVotedCandidates = 7, kMoreCandidates = 3;
+  static constexpr std::size_t kVotedCandidates = 7, kMoreCandidates = 3,
+                               kCandidates = kVotedCandidates + kMoreCandidates;
   static constexpr std::size_t kHypotheses = 24;
 
   void add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
@@ -185,9 +186,8 @@ class Map {
   std::int64_t keyframe_stamp_ns_ = 0;  // of the latest keyframe
   Se3 T_world_keyframe_;                // as the odometry has it
   Matrix6 world_covariance_ = Matrix6::Zero();
-  std::uint16_t searched_ = 0;  // the keyframe whose place is searched
-  std::array<PlaceCandidate, kVotedCandidates + kMoreCandidates>
-      candidates_;  // for it, the next to compare last
+  std::uint16_t searched_ = 0;                          // the keyframe whose place is searched
+  std::array<PlaceCandidate, kCandidates> candidates_;  // for it, the next to compare last
   std::size_t candidate_count_ = 0;
   std::size_t to_compare_ = 0;  // of them, before the next judgement
   bool is_promising_ = false;   // a hypothesis was found since the last candidates were chosen

@@ -71,9 +71,8 @@ class RangeCheck {
     return (static_cast<double>(bound) * 1e6 + kRounds - kRounds) / 1e6;
   }
 
-  // Appends the bound in decimal, with up to six decimals. It does without the C library. It
-  // works in doubles because small processors divide those in hardware, but 64-bit integers in a long
-  // function.
+  // Appends the bound in decimal, with up to six decimals. It does without the C library. It works in doubles
+  // because small processors divide those in hardware, but 64-bit integers in a long function.
   void append_bound(double bound) {
     constexpr double kPerOne = 1e6;
     if (bound < 0) status_.append("-");

@@ -16,8 +16,8 @@ namespace plvo {
 // The velocity (v, ω) per second of the scene in the camera's axes (exposure.hpp), a mean over measured_ns.
 struct Velocity {
   Vector6 value = Vector6::Zero();
-  std::int64_t measured_ns = 0;  // 0: the velocity is not known
-  static constexpr int kIntervals = 3;
+  std::int64_t measured_ns = 0;         // 0: the velocity is not known
+  static constexpr int kIntervals = 3;  // for which it says something
 
   bool known() const { return measured_ns > 0; }
   bool is_out_of_date(std::int64_t elapsed_ns) const {

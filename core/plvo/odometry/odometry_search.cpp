@@ -55,6 +55,7 @@ void Odometry::search(const CurrentFrame& frame, TrackedMotion& tracked) {
   if (window_.has_keyframe()) {
     tracked.base.slot = window_.keyframe();
     search_motion(frame, tracking, tracked);
+    // After such a gap the view must be recognised, like that of a kept keyframe.
     if (tracked.ok() && is_unobserved(window_, frame) &&
         !still_seen(window_[window_.keyframe()].features, tracking.tracks(0),
                     config_->references.keyframe_inlier_ratio))
