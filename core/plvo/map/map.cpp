@@ -97,8 +97,7 @@ void Map::clear() {
   memory_.graph.clear();
   std::fill(memory_.neighbours.begin(), memory_.neighbours.end(), MapMemory::Neighbour());
   candidate_count_ = to_compare_ = hypothesis_count_ = refreshed_ = 0;
-  is_judged_ = true;
-  follows_camera_ = false;
+  is_searching_ = follows_camera_ = refines_velocity_ = false;
 }
 
 MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
@@ -108,12 +107,16 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
   // Nothing is known of the motion between two worlds. The second condition finds the first world of an
   // odometry that was initialised anew.
   if (result.world != world_ || (result.state == TrackState::kInitialising && !result.restarted))
-    follows_camera_ = false;
+    follows_camera_ = refines_velocity_ = false;
   world_ = result.world;
   if (view.features != nullptr && view.features->points.described &&
       (!follows_camera_ || view.features->stamp_ns != keyframe_stamp_ns_)) {
     add_keyframe(view, result, out);
   } else {
+    if (refines_velocity_ && view.features != nullptr && view.features->stamp_ns == keyframe_stamp_ns_)
+      memory_.features.set(memory_.graph.last(), view.features->points, view.features->lines, check_.camera,
+                           view.velocity);
+    refines_velocity_ = false;
     search_on(out);
     memory_.graph.step();
     for (int i = 0; i < kRefreshedPerFrame && memory_.graph.size() > 0; ++i) {
@@ -167,8 +170,8 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   // While the place is unknown, a search goes on to its end. Otherwise the next keyframe begins one of its
   // own.
   const bool is_observed = !exceeds(covariance, kObservedMotion);
-  const bool goes_on = !is_judged_ && is_observed && !place_is_known(searched_);
-  if (!is_judged_ && !goes_on) judge(out);
+  const bool goes_on = is_searching_ && is_observed && !place_is_known(searched_);
+  if (is_searching_ && !goes_on) judge(out);
   // No observed motion leads to the hypotheses from before.
   if (!is_observed) hypothesis_count_ = 0;
   // Read before a keyframe is removed, because that may be the latest one.
@@ -187,15 +190,16 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
     remove(goes, out);
   }
   const std::uint16_t slot = memory_.graph.append(T_previous_this, covariance, part);
-  memory_.features.set(slot, features.points, features.lines);
+  memory_.features.set(slot, features.points, features.lines, check_.camera, view.velocity);
   measure_depth(slot);
   memory_.index.add(all_descriptors(), slot, memory_.features.at(slot).descriptors.size());
   find_neighbour(slot);
   ++counts_.keyframes;
   follows_camera_ = true;
+  refines_velocity_ = check_.camera.readout_s > 0;
   keyframe_stamp_ns_ = features.stamp_ns;
   world_covariance_ = result.pose_covariance;
-  if (goes_on && !is_judged_) {
+  if (goes_on && is_searching_) {
     memory_.excluded[slot] = 1;
     search_on(out);
   } else {
@@ -206,7 +210,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
 void Map::search_on(MapResult& out) {
   if (to_compare_ > 0)
     compare_next();
-  else if (!is_judged_)
+  else if (is_searching_)
     judge(out);
 }
 
@@ -223,7 +227,7 @@ void Map::measure_depth(std::uint16_t slot) {
 
 bool Map::settle() {
   MapResult out;
-  while (!is_judged_) search_on(out);
+  while (is_searching_) search_on(out);
   while (!memory_.graph.idle()) memory_.graph.step();
   return out.recognised;
 }
@@ -278,7 +282,7 @@ void Map::remove(std::uint16_t slot, MapResult& out) {
   drop_candidate(slot);
   if (slot == searched_) {
     candidate_count_ = to_compare_ = 0;
-    is_judged_ = true;
+    is_searching_ = false;
   }
   const auto gone = [slot](const Hypothesis& h) { return h.old_slot == slot || h.new_slot == slot; };
   remove_those(hypotheses_, hypothesis_count_, gone);
@@ -306,7 +310,7 @@ void Map::find_candidates(std::uint16_t slot) {
     if (candidate.score >= (is_known ? kLeastScore : kLeastScoreUnknown)) ++candidate_count_;
   searched_ = slot;
   is_promising_ = true;
-  is_judged_ = candidate_count_ == 0;
+  is_searching_ = candidate_count_ > 0;
   to_compare_ = std::min(candidate_count_, kFirstCandidates);
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }
@@ -314,13 +318,13 @@ void Map::find_candidates(std::uint16_t slot) {
 // While the place is unknown: the views near the pose that the best hypothesis gives or, without one, those
 // with the next most votes are compared before the next judgement.
 void Map::look_further() {
-  is_judged_ = true;
+  is_searching_ = false;
   if (place_is_known(searched_) || !is_promising_) return;
   is_promising_ = false;
   if (const Hypothesis* best = best_hypothesis())
     add_views_near(pose_after(*best), memory_.graph.node(best->old_slot).part, memory_.depths[searched_]);
   to_compare_ = std::min(candidate_count_, kMoreCandidates);
-  is_judged_ = to_compare_ == 0;
+  is_searching_ = to_compare_ > 0;
 }
 
 // The pose in the map that the hypothesis gives the keyframe whose place is searched.
@@ -461,7 +465,7 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
 // Called in the frame after the comparisons, or before the next keyframe. The best of the hypotheses and
 // those that agree with it become loops, if they are enough and no hypothesis contradicts them.
 void Map::judge(MapResult& out) {
-  is_judged_ = true;
+  is_searching_ = false;
   const Hypothesis* best = best_hypothesis();
   if (best == nullptr) return;
   const std::span<Hypothesis> all = std::span(hypotheses_).first(hypothesis_count_);

@@ -184,14 +184,16 @@ class Map {
   bool follows_camera_ = false;         // a keyframe of this world has joined
   std::uint32_t world_ = 0;             // of the odometry
   std::int64_t keyframe_stamp_ns_ = 0;  // of the latest keyframe
-  Se3 T_world_keyframe_;                // as the odometry has it
+  // The latest keyframe has a rolling shutter, and its velocity is known better after the next frame.
+  bool refines_velocity_ = false;
+  Se3 T_world_keyframe_;  // as the odometry has it
   Matrix6 world_covariance_ = Matrix6::Zero();
   std::uint16_t searched_ = 0;                          // the keyframe whose place is searched
   std::array<PlaceCandidate, kCandidates> candidates_;  // for it, the next to compare last
   std::size_t candidate_count_ = 0;
   std::size_t to_compare_ = 0;  // of them, before the next judgement
   bool is_promising_ = false;   // a hypothesis was found since the last candidates were chosen
-  bool is_judged_ = true;       // the search has ended
+  bool is_searching_ = false;   // for the place of searched_
   std::array<Hypothesis, kHypotheses> hypotheses_;  // the latest, oldest first
   std::size_t hypothesis_count_ = 0;
   Counts counts_;

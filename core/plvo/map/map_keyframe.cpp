@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "plvo/camera/exposure.hpp"
 #include "plvo/math/rounding.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/math/trigonometry.hpp"
@@ -31,6 +32,17 @@ Vector3 to_vector(const std::array<float, 3>& p) {
 
 std::array<float, 3> to_floats(const Vector3& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
+// A point that leaves the image stays at its border.
+void move_to_mid_exposure(const Exposure& exposure, const CameraModel& camera, const Vector3& p,
+                          MapPoint& point) {
+  const Vector3 moved = exposure.at_mid_exposure(p);
+  if (!(moved.z() > kNearestSeen_m)) return;
+  const Vector2 at = project(camera.pinhole, moved);
+  point.u = std::clamp(static_cast<float>(at.x()), 0.0F, static_cast<float>(camera.width - 1));
+  point.v = std::clamp(static_cast<float>(at.y()), 0.0F, static_cast<float>(camera.height - 1));
+  point.depth_m = static_cast<float>(moved.z());
 }
 
 }  // namespace
@@ -72,7 +84,9 @@ Line3d unpack(const MapLine& packed) {
 
 void MapFeatureStore::clear() { std::fill(counts_.begin(), counts_.end(), Counts()); }
 
-void MapFeatureStore::set(std::size_t slot, const PointFeatures& points, const LineFeatures& lines) {
+void MapFeatureStore::set(std::size_t slot, const PointFeatures& points, const LineFeatures& lines,
+                          const CameraModel& camera, const Vector6& velocity) {
+  const Exposure exposure(camera, velocity, 0);
   Counts& counts = counts_[slot];
   counts = {};
   for (std::size_t i = 0; i < points.keypoints.size() && counts.points < keypoints_; ++i) {
@@ -84,12 +98,16 @@ void MapFeatureStore::set(std::size_t slot, const PointFeatures& points, const L
     const double sigma = sqrt(std::max(0.0, point.Sigma(2, 2))) / kSigmaUnit_m;
     points_[at] = {keypoint.u, keypoint.v, static_cast<float>(point.p.z()),
                    static_cast<std::uint16_t>(std::clamp(sigma + 0.5, 1.0, kMostSigmaUnits)), keypoint.level};
+    if (exposure.rolling()) move_to_mid_exposure(exposure, camera, point.p, points_[at]);
   }
   for (std::size_t i = 0; i < lines.count_3d && counts.lines < segments_; ++i) {
-    if (!((lines.lines[i].b - lines.lines[i].a).squaredNorm() > 0)) continue;
+    Line3d line = lines.lines[i];
+    if (!((line.b - line.a).squaredNorm() > 0)) continue;
     const std::size_t at = slot * segments_ + counts.lines++;
     line_descriptors_[at] = lines.descriptors[i];
-    lines_[at] = pack(lines.lines[i]);
+    line.a = exposure.at_mid_exposure(line.a);
+    line.b = exposure.at_mid_exposure(line.b);
+    lines_[at] = pack(line);
   }
 }
 

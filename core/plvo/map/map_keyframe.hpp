@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the map keeps of the features of its keyframes: the descriptors, and the 3D points and lines with
 // their covariances in fewer bytes. A point's covariance (4) follows from its pixel, its depth and two
-// standard deviations. A line's covariance is kept across the line, where it constrains a motion.
+// standard deviations. A line's covariance is kept across the line, where it constrains a motion. Two views
+// of one place are seldom seen with the same velocity, so the effect of a rolling shutter is removed first.
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 #include <span>
 
 #include "plvo/base/arena.hpp"
+#include "plvo/camera/camera_model.hpp"
 #include "plvo/lines/line_features.hpp"
 #include "plvo/map/map_limits.hpp"
 #include "plvo/points/keypoint.hpp"
@@ -50,8 +52,11 @@ class MapFeatureStore {
   // Forgets all features.
   void clear();
 
-  // Writes the features of a keyframe; those beyond the capacity, and points without depth, are left out.
-  void set(std::size_t slot, const PointFeatures& points, const LineFeatures& lines);
+  // Writes the features of a keyframe; those beyond the capacity, and points without depth, are left out. The
+  // velocity is that of the scene, as in exposure.hpp. With a rolling shutter, it moves the features to where
+  // they are when the middle row is exposed. How many there are does not depend on it.
+  void set(std::size_t slot, const PointFeatures& points, const LineFeatures& lines,
+           const CameraModel& camera, const Vector6& velocity);
   MapFeatures at(std::size_t slot) const;
   // Room for features that the caller writes; no more than keypoints() and segments().
   MapFeatures make_room(std::size_t slot, std::uint16_t points, std::uint16_t lines) {

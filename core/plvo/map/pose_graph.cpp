@@ -146,6 +146,7 @@ void PoseGraph::move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b,
   Node& newer = nodes_[in_order ? b : a];
   std::size_t first = newer.position;
   if (!is_uncertain(order_[first], known)) return;
+  note_change();
   double least_certain = generalised_variance(at(first).motion_covariance);
   std::size_t begin = first;  // of the uncertain nodes
   for (std::size_t k = first; k > older.position && is_uncertain(order_[k], known); begin = k--)
@@ -163,15 +164,14 @@ void PoseGraph::move_unknown(std::uint16_t a, std::uint16_t b, const Se3& T_a_b,
 // other loop: y = C (Σ C)⁻¹ r. Each round is a linearisation.
 void PoseGraph::share_out(const Node& older, const Node& newer, const Se3& T_older_newer, std::size_t begin,
                           double least_variance) {
-  const auto shares = [&](const Node& node) {
-    return node.position <= newer.position && generalised_variance(node.motion_covariance) >= least_variance;
-  };
-  while (begin < newer.position && !shares(at(begin))) ++begin;
+  for (std::size_t k = begin; k <= newer.position; ++k)
+    at(k).shares = generalised_variance(at(k).motion_covariance) >= least_variance;
+  while (begin < newer.position && !at(begin).shares) ++begin;
   for (int round = 0; round < kSharingRounds; ++round) {
     Matrix6 sum = Matrix6::Zero();
     for (std::size_t k = begin; k <= newer.position; ++k) {
       Node& node = at(k);
-      if (!shares(node)) continue;
+      if (!node.shares) continue;
       node.C = motion_in_map(at(k - 1).T_map_keyframe, node.T_previous_keyframe, node.motion_covariance);
       sum += node.C;
     }
@@ -182,7 +182,7 @@ void PoseGraph::share_out(const Node& older, const Node& newer, const Se3& T_old
     Vector6 x = Vector6::Zero();
     for (std::size_t k = begin; k < size_; ++k) {
       Node& node = at(k);
-      if (shares(node)) x += node.C * force;
+      if (k <= newer.position && node.shares) x += node.C * force;
       node.T_map_keyframe = displacement(x) * node.T_map_keyframe;
       node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
     }

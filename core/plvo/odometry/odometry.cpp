@@ -277,7 +277,7 @@ FeatureView Odometry::features() const {
 KeyframeView Odometry::keyframe() const {
   if (!window_.has_keyframe()) return {};
   const Window::Frame& keyframe = window_[window_.keyframe()];
-  return {&keyframe.features, keyframe.pose.T_world_camera};
+  return {&keyframe.features, keyframe.pose.T_world_camera, keyframe.velocity.value};
 }
 
 std::span<const Arena::Record> Odometry::memory_records() const { return arena_.records(); }

@@ -76,6 +76,9 @@ constexpr std::size_t required_bytes(const Limits& limits) {
 struct KeyframeView {
   const FrameFeatures* features = nullptr;  // null: there is none
   Se3 T_world_camera;
+  // Velocity (v, ω) of the scene during its exposure, per second (exposure.hpp), as known now; zero if it is
+  // not known.
+  Vector6 velocity = Vector6::Zero();
 };
 
 class Odometry {

@@ -47,7 +47,7 @@ class ViewMaker {
     if (!odometry_.track(frame).status.ok()) return false;
     const FrameFeatures* features = odometry_.keyframe().features;
     if (features == nullptr || !features->points.described) return false;
-    store_.set(slot, features->points, features->lines);
+    store_.set(slot, features->points, features->lines, check_.camera, Vector6::Zero());
     return true;
   }
   // Median depth of the points.
