@@ -307,6 +307,11 @@ void PoseGraph::begin_round(int round) {
   round_ = round;
   count_ = size_;
   edge_ = 1;  // the first node has no motion
+  for (std::size_t k = 0; k < size_; ++k) at(k).loops = 0;
+  for (const Loop& loop : loops()) {
+    ++nodes_[loop.older].loops;
+    ++nodes_[loop.newer].loops;
+  }
 }
 
 void PoseGraph::linearise() {
@@ -356,9 +361,10 @@ void PoseGraph::linearise_loop(Loop& loop) {
   Cholesky<6> cholesky;
   loop.W.setZero();
   if (cholesky.factor(C)) {
+    const double independent = 2.0 / (older.loops + newer.loops);
     double weight = 1;
-    kernel_(cholesky.solve_lower(loop.residual).squaredNorm(), weight);
-    loop.W = weight * cholesky.inverse();
+    kernel_(independent * cholesky.solve_lower(loop.residual).squaredNorm(), weight);
+    loop.W = independent * weight * cholesky.inverse();
   }
 }
 

@@ -45,6 +45,7 @@ class PoseGraph {
     std::uint32_t id = 0;    // 1, 2, … in the order of the chain; 0: the slot is free
     std::uint32_t part = 0;  // the id of the node with which the part began
     std::uint16_t position = 0;
+    std::uint16_t loops = 0;  // that begin or end here
     bool shares = false;  // the displacement that move_unknown() distributes
 
     // The solver's: covariance and information of the motion in the axes of the map, and vectors.
