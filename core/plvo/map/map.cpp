@@ -14,9 +14,11 @@ namespace {
 constexpr std::uint32_t kRecentKeyframes = 5;
 // The hypotheses of this many keyframes in a row are compared with each other.
 constexpr std::uint32_t kJudgedKeyframes = 10;
-// The score that a keyframe needs to be compared: that of six descriptors that vote for it alone.
-constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
-// While the place is unknown, the score of a single such descriptor suffices.
+// The votes that a keyframe needs to be compared. The index finds 40 % of the matches, and a comparison needs
+// twelve inliers. How many other keyframes the votes are divided among does not matter: a place that is seen
+// often is in many of them.
+constexpr std::uint16_t kLeastVotes = 6;
+// While the place is unknown, the score of a single descriptor that votes for the keyframe alone suffices.
 constexpr std::uint32_t kLeastScoreUnknown = PlaceIndex::kWholeVote;
 // A keyframe is compared with this many views that have the most votes, then judged. While the place is
 // unknown, more views follow, until the place is recognised or the latest ones show nothing.
@@ -98,6 +100,8 @@ void Map::clear() {
   std::fill(memory_.neighbours.begin(), memory_.neighbours.end(), MapMemory::Neighbour());
   candidate_count_ = to_compare_ = hypothesis_count_ = refreshed_ = 0;
   is_searching_ = follows_camera_ = refines_velocity_ = false;
+  loop_variance_ = 0;
+  since_loop_.setZero();
 }
 
 MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
@@ -167,17 +171,22 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                                     inverse_covariance(T_world_keyframe_, world_covariance_),
                                     view.T_world_camera, result.pose_covariance);
   }
-  // While the place is unknown, a search goes on to its end. Otherwise the next keyframe begins one of its
-  // own.
+  // A search goes on to its end, unless the motion from its keyframe is not observed.
   const bool is_observed = !exceeds(covariance, kObservedMotion);
-  const bool goes_on = is_searching_ && is_observed && !place_is_known(searched_);
-  if (is_searching_ && !goes_on) judge(out);
+  if (is_searching_ && !is_observed) {
+    judge(out);
+    is_searching_ = false;
+  }
   // No observed motion leads to the hypotheses from before.
   if (!is_observed) hypothesis_count_ = 0;
   // Read before a keyframe is removed, because that may be the latest one.
   const bool begins_part = memory_.graph.size() == 0 || !follows_camera_;
   const std::uint32_t part =
       begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;
+  if (memory_.graph.size() > 0) {
+    const Se3& T_map_last = memory_.graph.node(memory_.graph.last()).T_map_keyframe;
+    since_loop_ += motion_in_map(T_map_last, T_previous_this, covariance);
+  }
   if (memory_.graph.full()) {
     const std::uint16_t goes = least_needed();
     if (goes == memory_.graph.last()) {
@@ -199,10 +208,10 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   refines_velocity_ = check_.camera.readout_s > 0;
   keyframe_stamp_ns_ = features.stamp_ns;
   world_covariance_ = result.pose_covariance;
-  if (goes_on && is_searching_) {
+  if (is_searching_) {
     memory_.excluded[slot] = 1;
     search_on(out);
-  } else {
+  } else if (!place_is_known(slot) || generalised_variance(since_loop_) > loop_variance_) {
     find_candidates(slot);
   }
 }
@@ -254,17 +263,28 @@ void Map::find_neighbour(std::uint16_t slot) {
 }
 
 // The keyframe that a full map removes. It is the later one of the two whose views differ least, but never
-// the first keyframe, which defines the map. If no two views show the same place, it is the latest keyframe:
-// the old places stay.
+// the first keyframe, which defines the map, nor one whose place is searched. If no two views show the same
+// place, it is the latest keyframe: the old places stay.
+bool Map::is_in_use(std::uint16_t slot) const {
+  if (is_searching_ && slot == searched_) return true;
+  const std::uint32_t latest = memory_.graph.node(memory_.graph.last()).id;
+  if (memory_.graph.node(slot).id + kJudgedKeyframes < latest) return false;
+  const std::span<const Hypothesis> all = hypotheses();
+  return std::any_of(all.begin(), all.end(),
+                     [slot](const Hypothesis& h) { return h.new_slot == slot && !h.joined; });
+}
+
 std::uint16_t Map::least_needed() const {
   std::uint16_t least = memory_.graph.last();
   float distance = 1;
   for (std::size_t k = 1; k < memory_.graph.size(); ++k) {
     const std::uint16_t slot = memory_.graph.slot_at(k);
     if (memory_.neighbours[slot].distance >= distance) continue;
-    distance = memory_.neighbours[slot].distance;
     const std::uint16_t other = memory_.neighbours[slot].slot;
-    least = memory_.graph.node(other).position > k ? other : slot;
+    const std::uint16_t later = memory_.graph.node(other).position > k ? other : slot;
+    if (is_in_use(later)) continue;
+    distance = memory_.neighbours[slot].distance;
+    least = later;
   }
   return least;
 }
@@ -307,7 +327,7 @@ void Map::find_candidates(std::uint16_t slot) {
   memory_.index.query(all_descriptors(), memory_.features.at(slot).descriptors, memory_.excluded, best);
   candidate_count_ = 0;
   for (const PlaceCandidate& candidate : best)
-    if (candidate.score >= (is_known ? kLeastScore : kLeastScoreUnknown)) ++candidate_count_;
+    if (is_known ? candidate.votes >= kLeastVotes : candidate.score >= kLeastScoreUnknown) ++candidate_count_;
   searched_ = slot;
   is_promising_ = true;
   is_searching_ = candidate_count_ > 0;
@@ -357,7 +377,7 @@ void Map::add_views_near(const Se3& T_map_camera, std::uint32_t part, float dept
       nearest[i] = nearest[i - 1];
     }
     distances[at] = distance;
-    nearest[at] = {slot, 0};
+    nearest[at] = {slot, 0, 0};
   }
   for (std::size_t i = count; i-- > 0;) {
     const std::uint16_t slot = nearest[i].slot;
@@ -492,6 +512,8 @@ void Map::judge(MapResult& out) {
     ++counts_.loops;
     out.recognised = true;
   }
+  since_loop_ = memory_.graph.chain_covariance(best->new_slot, memory_.graph.last());
+  loop_variance_ = generalised_variance(loop.covariance);
 }
 
 std::optional<Se3> Map::keyframe_pose(std::uint32_t id) const {

@@ -152,6 +152,7 @@ class Map {
   static constexpr std::size_t kHypotheses = 24;
 
   void add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
+  bool is_in_use(std::uint16_t slot) const;
   std::uint16_t least_needed() const;
   void remove(std::uint16_t slot, MapResult& out);
   bool place_is_known(std::uint16_t slot) const;
@@ -188,6 +189,11 @@ class Map {
   bool refines_velocity_ = false;
   Se3 T_world_keyframe_;  // as the odometry has it
   Matrix6 world_covariance_ = Matrix6::Zero();
+  // Covariance of the motion since the keyframe that was recognised last, in the axes of the map, and the
+  // generalised variance of its loop (0: there is none). While the motion is more certain than a loop, a
+  // known place is not searched.
+  Matrix6 since_loop_ = Matrix6::Zero();
+  double loop_variance_ = 0;
   std::uint16_t searched_ = 0;                          // the keyframe whose place is searched
   std::array<PlaceCandidate, kCandidates> candidates_;  // for it, the next to compare last
   std::size_t candidate_count_ = 0;

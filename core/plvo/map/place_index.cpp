@@ -95,6 +95,7 @@ void PlaceIndex::remove(std::span<const Descriptor> stored, std::size_t slot, st
 void PlaceIndex::query(std::span<const Descriptor> stored, std::span<const Descriptor> query,
                        std::span<const std::uint8_t> excluded, FixedVector<PlaceCandidate>& best) {
   std::fill(scores_.begin(), scores_.end(), 0U);
+  std::fill(votes_.begin(), votes_.end(), std::uint16_t{0});
   std::fill(voters_.begin(), voters_.end(), 0U);
   std::array<std::uint16_t, kTables * kListLength> voted;
   for (std::size_t i = 0; i < query.size(); ++i) {
@@ -106,6 +107,7 @@ void PlaceIndex::query(std::span<const Descriptor> stored, std::span<const Descr
         if (excluded[slot] != 0 || voters_[slot] == voter) continue;
         if (hamming_distance(stored[entry], query[i]) > kNear) continue;
         voters_[slot] = voter;
+        ++votes_[slot];
         voted[count++] = static_cast<std::uint16_t>(slot);
       }
     }
@@ -116,7 +118,8 @@ void PlaceIndex::query(std::span<const Descriptor> stored, std::span<const Descr
   while (!best.full()) {
     const auto top = std::max_element(scores_.begin(), scores_.end());  // the first among equal ones
     if (top == scores_.end() || *top == 0) return;
-    best.push_back({static_cast<std::uint16_t>(top - scores_.begin()), *top});
+    const auto slot = static_cast<std::uint16_t>(top - scores_.begin());
+    best.push_back({slot, *top, votes_[slot]});
     *top = 0;
   }
 }

@@ -27,6 +27,7 @@ namespace plvo {
 struct PlaceCandidate {
   std::uint16_t slot = 0;
   std::uint32_t score = 0;  // kWholeVote for a descriptor that votes for this keyframe alone
+  std::uint16_t votes = 0;  // descriptors that vote for this keyframe
 };
 
 class PlaceIndex {
@@ -44,6 +45,7 @@ class PlaceIndex {
     heads_ = memory.take<std::uint32_t>("map index", kTables * lists_);
     nexts_ = memory.take<std::uint32_t>("map index", kTables * entries);
     scores_ = memory.take<std::uint32_t>("map index", static_cast<std::size_t>(limits.keyframes));
+    votes_ = memory.take<std::uint16_t>("map index", static_cast<std::size_t>(limits.keyframes));
     voters_ = memory.take<std::uint32_t>("map index", static_cast<std::size_t>(limits.keyframes));
   }
   // Removes all descriptors.
@@ -81,7 +83,9 @@ class PlaceIndex {
 
   std::size_t keypoints_ = 0, lists_ = 0;
   std::span<std::uint32_t> heads_, nexts_;
-  std::span<std::uint32_t> scores_, voters_;  // by slot, of one query
+  // By slot, of one query:
+  std::span<std::uint32_t> scores_, voters_;
+  std::span<std::uint16_t> votes_;
 };
 
 }  // namespace plvo

@@ -46,7 +46,7 @@ class PoseGraph {
     std::uint32_t part = 0;  // the id of the node with which the part began
     std::uint16_t position = 0;
     std::uint16_t loops = 0;  // that begin or end here
-    bool shares = false;  // the displacement that move_unknown() distributes
+    bool shares = false;      // the displacement that move_unknown() distributes
 
     // The solver's: covariance and information of the motion in the axes of the map, and vectors.
     Matrix6 C = Matrix6::Zero(), W = Matrix6::Zero();
