@@ -106,6 +106,25 @@ TEST(Map, FindsTheCameraWhereEachFrameIsAKeyframe) {
   EXPECT_EQ(camera.wrong_loops(), 0);
 }
 
+// Each frame is a keyframe, and a full map removes one for each. The one whose place is searched stays, and a
+// place that many keyframes show is recognised as one that few show.
+TEST(Map, AFullMapRecognisesPlacesRoundAfterRoundWhereEachFrameIsAKeyframe) {
+  MappedCamera camera(48, ReferencePolicy::kPreviousFrame);
+  int recognised = 0;
+  for (int round = 0; round < 4; ++round) {
+    camera.move(0, kTurn);
+    camera.move(kTurn, 0);
+    std::printf("round %d: recognised %d times\n", round, camera.recognised - recognised);
+    EXPECT_GT(camera.recognised - recognised, 10);
+    recognised = camera.recognised;
+  }
+  camera.settle(0);
+  say("each frame a keyframe", camera);
+  EXPECT_EQ(camera.map.graph().size(), 48U);
+  EXPECT_EQ(camera.wrong_loops(), 0);
+  EXPECT_LT(camera.map_error_m(), 0.5 * camera.odometry_error_m());
+}
+
 TEST(Map, AfterAResetNothingIsKnownUntilAPlaceIsRecognised) {
   MappedCamera camera(64);
   camera.move(0, kTurn);

@@ -91,8 +91,10 @@ TEST_F(PlaceIndexTest, AVoteForManyPlacesCountsLess) {
   ASSERT_EQ(best.size(), 4U);
   EXPECT_EQ(best[0].slot, 2);
   EXPECT_EQ(best[0].score, PlaceIndex::kWholeVote + PlaceIndex::kWholeVote / 4);
+  EXPECT_EQ(best[0].votes, 2) << "a vote is divided in the score only";
   EXPECT_EQ(best[1].slot, 0) << "among equal ones the lower slot";
   EXPECT_EQ(best[1].score, PlaceIndex::kWholeVote / 4);
+  EXPECT_EQ(best[1].votes, 1);
 }
 
 TEST_F(PlaceIndexTest, ForgetsWhatWasRemovedAndLeavesOutWhatIsExcluded) {

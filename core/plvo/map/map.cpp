@@ -331,19 +331,25 @@ void Map::find_candidates(std::uint16_t slot) {
   searched_ = slot;
   is_promising_ = true;
   is_searching_ = candidate_count_ > 0;
-  to_compare_ = std::min(candidate_count_, kFirstCandidates);
+  to_compare_ =
+      is_known ? std::min(candidate_count_, std::size_t{1}) : std::min(candidate_count_, kFirstCandidates);
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }
 
-// While the place is unknown: the views near the pose that the best hypothesis gives or, without one, those
-// with the next most votes are compared before the next judgement.
+// A known place is compared with one view at a time. While the place is unknown, the views near the pose that
+// the best hypothesis gives or, without one, those with the next most votes are compared before the next
+// judgement.
 void Map::look_further() {
   is_searching_ = false;
-  if (place_is_known(searched_) || !is_promising_) return;
-  is_promising_ = false;
-  if (const Hypothesis* best = best_hypothesis())
-    add_views_near(pose_after(*best), memory_.graph.node(best->old_slot).part, memory_.depths[searched_]);
-  to_compare_ = std::min(candidate_count_, kMoreCandidates);
+  std::size_t count = 1;
+  if (!place_is_known(searched_)) {
+    if (!is_promising_) return;
+    is_promising_ = false;
+    if (const Hypothesis* best = best_hypothesis())
+      add_views_near(pose_after(*best), memory_.graph.node(best->old_slot).part, memory_.depths[searched_]);
+    count = kMoreCandidates;
+  }
+  to_compare_ = std::min(candidate_count_, count);
   is_searching_ = to_compare_ > 0;
 }
 
@@ -408,8 +414,10 @@ void Map::compare_next() {
     T_new_old = pose_after(*guide).inverse() * memory_.graph.node(latest.old_slot).T_map_keyframe;
   latest.loop = check_(memory_.features.at(latest.old_slot), memory_.features.at(latest.new_slot), arena_,
                        guide != nullptr ? &T_new_old : nullptr);
-  if (latest.loop.found && plausible(latest)) keep(latest);
-  if (to_compare_ == 0 && !may_suffice()) look_further();
+  const bool is_accepted = latest.loop.found && plausible(latest);
+  if (is_accepted) keep(latest);
+  const bool is_worth_judging = may_suffice() && (is_accepted || !place_is_known(searched_));
+  if (to_compare_ == 0 && !is_worth_judging) look_further();
 }
 
 void Map::keep(const Hypothesis& hypothesis) {
