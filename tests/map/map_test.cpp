@@ -95,7 +95,7 @@ TEST(Map, FindsTheCameraWhereEachFrameIsAKeyframe) {
   MappedCamera camera(128, ReferencePolicy::kPreviousFrame);
   camera.move(0, kTurn);
   const int keyframes = camera.map.counts().keyframes;
-  EXPECT_GT(keyframes, kTurn / 2);
+  EXPECT_LT(keyframes, kTurn / 3) << "a view that is nearly the one before does not join";
   const int recognised = camera.recognised;
   camera.odometry.reset();
   int frames = 0;
@@ -106,10 +106,10 @@ TEST(Map, FindsTheCameraWhereEachFrameIsAKeyframe) {
   EXPECT_EQ(camera.wrong_loops(), 0);
 }
 
-// Each frame is a keyframe, and a full map removes one for each. The one whose place is searched stays, and a
-// place that many keyframes show is recognised as one that few show.
-TEST(Map, AFullMapRecognisesPlacesRoundAfterRoundWhereEachFrameIsAKeyframe) {
-  MappedCamera camera(48, ReferencePolicy::kPreviousFrame);
+// A full map removes a keyframe for each that joins. The one whose place is searched stays, and a place that
+// many keyframes show is recognised as one that few show.
+TEST(Map, AFullMapRecognisesPlacesRoundAfterRound) {
+  MappedCamera camera(8, ReferencePolicy::kPreviousFrame);
   int recognised = 0;
   for (int round = 0; round < 4; ++round) {
     camera.move(0, kTurn);
@@ -118,11 +118,9 @@ TEST(Map, AFullMapRecognisesPlacesRoundAfterRoundWhereEachFrameIsAKeyframe) {
     EXPECT_GT(camera.recognised - recognised, 10);
     recognised = camera.recognised;
   }
-  camera.settle(0);
-  say("each frame a keyframe", camera);
-  EXPECT_EQ(camera.map.graph().size(), 48U);
+  say("full map", camera);
+  EXPECT_EQ(camera.map.graph().size(), 8U);
   EXPECT_EQ(camera.wrong_loops(), 0);
-  EXPECT_LT(camera.map_error_m(), 0.5 * camera.odometry_error_m());
 }
 
 TEST(Map, AfterAResetNothingIsKnownUntilAPlaceIsRecognised) {
@@ -222,7 +220,7 @@ TEST(Map, StaysWithinItsCapacityRoundAfterRound) {
 // Every compiler, optimisation level and processor must give these bits. If a change of the odometry or of
 // the map alters them on purpose, the new number stands in the message.
 TEST(Map, GivesTheSameBitsEverywhere) {
-  constexpr std::uint64_t kGolden = 15312693741760475957U;
+  constexpr std::uint64_t kGolden = 11164281376073037486U;
   MappedCamera camera(12);
   Fingerprint bits;
   const auto look = [&](int view) {

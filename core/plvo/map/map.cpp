@@ -44,12 +44,15 @@ constexpr double kSameViewMove = 0.5, kSameViewTurn_rad = 0.5;
 constexpr VarianceBounds kObservedMotion{.position_m2 = 0.1, .orientation_rad2 = 0.1};
 // A place more uncertain than this is as good as unknown: the camera was carried, or lost for seconds.
 constexpr VarianceBounds kKnownPlace{.position_m2 = 1, .orientation_rad2 = 1};
+// A keyframe whose view differs by less than this from the one before does not join the map: nearly all such
+// pairs are recognised anyway. See view_distance_between().
+constexpr float kNewView = 0.1F;
 // Neighbours that are searched anew for each frame.
 constexpr int kRefreshedPerFrame = 2;
 
-// Whether δ is within a covariance.
-bool lies_within(const Vector6& delta, const Matrix6& covariance) {
-  return mahalanobis_squared<6>(delta, covariance) <= kCovarianceSlack * kMostPlausibleMotion;
+// Whether δ is within a covariance whose variances are this many times as large.
+bool lies_within(const Vector6& delta, const Matrix6& covariance, double slack) {
+  return mahalanobis_squared<6>(delta, covariance) <= slack * kMostPlausibleMotion;
 }
 
 // How much two views differ, by the translation as a share of the scene's depth and by the angle. Below 1
@@ -114,47 +117,54 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
     follows_camera_ = refines_velocity_ = false;
   world_ = result.world;
   if (view.features != nullptr && view.features->points.described &&
-      (!follows_camera_ || view.features->stamp_ns != keyframe_stamp_ns_)) {
-    add_keyframe(view, result, out);
-  } else {
-    if (refines_velocity_ && view.features != nullptr && view.features->stamp_ns == keyframe_stamp_ns_)
-      memory_.features.set(memory_.graph.last(), view.features->points, view.features->lines, check_.camera,
-                           view.velocity);
-    refines_velocity_ = false;
-    search_on(out);
-    memory_.graph.step();
-    for (int i = 0; i < kRefreshedPerFrame && memory_.graph.size() > 0; ++i) {
-      refreshed_ = (refreshed_ + 1) % memory_.graph.size();
-      find_neighbour(memory_.graph.slot_at(refreshed_));
-    }
-  }
+      (!follows_camera_ || view.features->stamp_ns != seen_.stamp_ns))
+    see_keyframe(view, result, out);
+  else
+    continue_work(view, out);
   if (!follows_camera_) return out;
   const PoseGraph::Node& latest = memory_.graph.node(memory_.graph.last());
-  if (view.features != nullptr && view.features->stamp_ns == keyframe_stamp_ns_)
-    T_world_keyframe_ = view.T_world_camera;
+  if (view.features != nullptr && view.features->stamp_ns == seen_.stamp_ns)
+    seen_.T_world_camera = view.T_world_camera;
+  const Se3 T_seen_camera = seen_.T_world_camera.inverse() * result.T_world_camera;
   out.located = located();
   out.keyframe = latest.id;
-  out.T_map_world = latest.T_map_keyframe * T_world_keyframe_.inverse();
+  out.T_map_world = latest.T_map_keyframe * seen_.T_keyframe_camera * seen_.T_world_camera.inverse();
   out.T_map_world.R = renormalise(out.T_map_world.R);
-  out.T_keyframe_camera = T_world_keyframe_.inverse() * result.T_world_camera;
-  const Matrix6 of_keyframe = about_position(latest.covariance, latest.T_map_keyframe.t);
-  const bool moved_since = result.reference_stamp_ns == keyframe_stamp_ns_;
+  out.T_keyframe_camera = seen_.T_keyframe_camera * T_seen_camera;
+  const bool moved_since = result.reference_stamp_ns == seen_.stamp_ns;
   const Matrix6 of_motion = moved_since
                                 ? inverse_covariance(result.T_camera_reference, result.motion_covariance)
                                 : Matrix6(Matrix6::Zero());
+  const Matrix6 since_keyframe =
+      compose_covariance(seen_.T_keyframe_camera, seen_.covariance, T_seen_camera, of_motion);
   out.pose_covariance =
-      compose_covariance(latest.T_map_keyframe, of_keyframe, out.T_keyframe_camera, of_motion);
+      compose_covariance(latest.T_map_keyframe, about_position(latest.covariance, latest.T_map_keyframe.t),
+                         out.T_keyframe_camera, since_keyframe);
   (void)make_bounded_covariance(out.pose_covariance);
   return out;
 }
 
-// The motion from the keyframe before is the odometry's measurement, if the frame was matched with that
+// In a frame that brings no keyframe.
+void Map::continue_work(const KeyframeView& view, MapResult& out) {
+  if (refines_velocity_ && view.features != nullptr && view.features->stamp_ns == keyframe_stamp_ns_)
+    memory_.features.set(memory_.graph.last(), view.features->points, view.features->lines, check_.camera,
+                         view.velocity);
+  refines_velocity_ = false;
+  search_on(out);
+  memory_.graph.step();
+  for (int i = 0; i < kRefreshedPerFrame && memory_.graph.size() > 0; ++i) {
+    refreshed_ = (refreshed_ + 1) % memory_.graph.size();
+    find_neighbour(memory_.graph.slot_at(refreshed_));
+  }
+}
+
+// The motion from the odometry's keyframe before is its measurement, if the frame was matched with that
 // keyframe. Otherwise it is the difference of the poses, with their uncertainty; between two worlds nothing
 // is known of it.
-void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out) {
-  const FrameFeatures& features = *view.features;
-  const bool measured = result.state == TrackState::kTracking && result.stamp_ns == features.stamp_ns &&
-                        result.reference_stamp_ns == keyframe_stamp_ns_;
+void Map::see_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out) {
+  const std::int64_t stamp_ns = view.features->stamp_ns;
+  const bool measured = result.state == TrackState::kTracking && result.stamp_ns == stamp_ns &&
+                        result.reference_stamp_ns == seen_.stamp_ns;
   Se3 T_previous_this;
   Matrix6 covariance = Matrix6::Zero();
   if (memory_.graph.size() == 0) {
@@ -166,11 +176,39 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
     T_previous_this = result.T_camera_reference.inverse();
     covariance = inverse_covariance(result.T_camera_reference, result.motion_covariance);
   } else {
-    T_previous_this = T_world_keyframe_.inverse() * view.T_world_camera;
-    covariance = compose_covariance(T_world_keyframe_.inverse(),
-                                    inverse_covariance(T_world_keyframe_, world_covariance_),
+    T_previous_this = seen_.T_world_camera.inverse() * view.T_world_camera;
+    covariance = compose_covariance(seen_.T_world_camera.inverse(),
+                                    inverse_covariance(seen_.T_world_camera, seen_.world_covariance),
                                     view.T_world_camera, result.pose_covariance);
   }
+  if (!follows_camera_) seen_ = {};
+  seen_.covariance =
+      compose_covariance(seen_.T_keyframe_camera, seen_.covariance, T_previous_this, covariance);
+  seen_.T_keyframe_camera = seen_.T_keyframe_camera * T_previous_this;
+  seen_.T_keyframe_camera.R = renormalise(seen_.T_keyframe_camera.R);
+  seen_.stamp_ns = stamp_ns;
+  seen_.T_world_camera = view.T_world_camera;
+  seen_.world_covariance = result.pose_covariance;
+  if (shows_the_latest_view())
+    continue_work(view, out);
+  else
+    add_keyframe(view, out);
+}
+
+// Whether the odometry's keyframe shows nearly what the latest one of the map shows, in a known place.
+bool Map::shows_the_latest_view() const {
+  if (!follows_camera_ || memory_.graph.size() == 0) return false;
+  const std::uint16_t last = memory_.graph.last();
+  return place_is_known(last) && !exceeds(seen_.covariance, kObservedMotion) &&
+         view_distance_between(Se3(), seen_.T_keyframe_camera, memory_.depths[last]) < kNewView;
+}
+
+void Map::add_keyframe(const KeyframeView& view, MapResult& out) {
+  const FrameFeatures& features = *view.features;
+  Se3 T_previous_this = seen_.T_keyframe_camera;
+  Matrix6 covariance = seen_.covariance;
+  seen_.T_keyframe_camera = Se3();
+  seen_.covariance.setZero();
   // A search goes on to its end, unless the motion from its keyframe is not observed.
   const bool is_observed = !exceeds(covariance, kObservedMotion);
   if (is_searching_ && !is_observed) {
@@ -207,7 +245,6 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   follows_camera_ = true;
   refines_velocity_ = check_.camera.readout_s > 0;
   keyframe_stamp_ns_ = features.stamp_ns;
-  world_covariance_ = result.pose_covariance;
   if (is_searching_) {
     memory_.excluded[slot] = 1;
     search_on(out);
@@ -265,6 +302,16 @@ void Map::find_neighbour(std::uint16_t slot) {
 // The keyframe that a full map removes. It is the later one of the two whose views differ least, but never
 // the first keyframe, which defines the map, nor one whose place is searched. If no two views show the same
 // place, it is the latest keyframe: the old places stay.
+// Whether one of the last keyframes has a loop.
+bool Map::was_just_recognised() const {
+  const std::uint32_t latest = memory_.graph.node(memory_.graph.last()).id;
+  const std::span<const Hypothesis> all = hypotheses();
+  return std::any_of(all.begin(), all.end(), [&](const Hypothesis& h) {
+    return h.joined && memory_.graph.node(h.new_slot).id + kJudgedKeyframes >= latest;
+  });
+}
+
+// Whether a keyframe is searched, or waits for others that agree with it.
 bool Map::is_in_use(std::uint16_t slot) const {
   if (is_searching_ && slot == searched_) return true;
   const std::uint32_t latest = memory_.graph.node(memory_.graph.last()).id;
@@ -332,13 +379,13 @@ void Map::find_candidates(std::uint16_t slot) {
   is_promising_ = true;
   is_searching_ = candidate_count_ > 0;
   to_compare_ =
-      is_known ? std::min(candidate_count_, std::size_t{1}) : std::min(candidate_count_, kFirstCandidates);
+      std::min(candidate_count_, is_known && was_just_recognised() ? std::size_t{1} : kFirstCandidates);
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }
 
-// A known place is compared with one view at a time. While the place is unknown, the views near the pose that
-// the best hypothesis gives or, without one, those with the next most votes are compared before the next
-// judgement.
+// Where places were recognised up to now, one more view is compared before the next judgement. While the
+// place is unknown, these are the views near the pose that the best hypothesis gives or, without one, those
+// with the next most votes.
 void Map::look_further() {
   is_searching_ = false;
   std::size_t count = 1;
@@ -456,7 +503,8 @@ bool Map::plausible(const Hypothesis& h) const {
   const Matrix6 covariance = about_position(
       between(h.old_slot, h.new_slot) + motion_in_map(a.T_map_keyframe, h.loop.T_old_new, h.loop.covariance),
       t);
-  return lies_within(boxminus(a.T_map_keyframe * h.loop.T_old_new, b.T_map_keyframe), covariance);
+  return lies_within(boxminus(a.T_map_keyframe * h.loop.T_old_new, b.T_map_keyframe), covariance,
+                     kCovarianceSlack);
 }
 
 // Covariance of the perturbation x_b − x_a.
@@ -466,7 +514,8 @@ Matrix6 Map::between(std::uint16_t a, std::uint16_t b) const {
   return generalised_variance(chain) < generalised_variance(both) ? chain : both;
 }
 
-// Each of two hypotheses gives the latest part of the map a pose. They agree if these poses do.
+// Each of two hypotheses gives the latest part of the map a pose. They agree if these poses do, and
+// contradict each other if the poses differ by more than the slack allows.
 Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   const PoseGraph::Node& new_a = memory_.graph.node(a.new_slot);
   const PoseGraph::Node& new_b = memory_.graph.node(b.new_slot);
@@ -487,7 +536,9 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
       about_position(memory_.graph.chain_covariance(a.new_slot, b.new_slot), new_b.T_map_keyframe.t);
   covariance += transform_covariance(rotation_of_both(turn), of_new);
   if (exceeds(covariance, kObservedMotion)) return Relation::kUnrelated;
-  return lies_within(boxminus(by_a, by_b), covariance) ? Relation::kAgree : Relation::kContradict;
+  const Vector6 delta = boxminus(by_a, by_b);
+  if (lies_within(delta, covariance, 1)) return Relation::kAgree;
+  return lies_within(delta, covariance, kCovarianceSlack) ? Relation::kUnrelated : Relation::kContradict;
 }
 
 // Called in the frame after the comparisons, or before the next keyframe. The best of the hypotheses and

@@ -9,8 +9,9 @@
 //
 // The odometry's pose stays as it is; T_map_world takes the corrections (as odom and map in ROS REP 105).
 //
-// Each keyframe of the odometry becomes one of the map (map_keyframe.hpp). It is compared with those that
-// look alike (place_index.hpp), one for each frame, by the estimator (loop_check.hpp). A place is recognised
+// A keyframe of the odometry becomes one of the map (map_keyframe.hpp), unless its view is nearly that of the
+// one before. It is compared with those that look alike (place_index.hpp), one for each frame, by the
+// estimator (loop_check.hpp). A place is recognised
 // when several comparisons agree on one motion, none contradicts them, and the motion lies within the
 // uncertainty of the map. The loops then join the pose graph (pose_graph.hpp), which is solved in steps, one
 // for each frame. When the map is full, a keyframe is removed whose view another one shows as well; the only
@@ -151,7 +152,11 @@ class Map {
                                kCandidates = kVotedCandidates + kMoreCandidates;
   static constexpr std::size_t kHypotheses = 24;
 
-  void add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
+  void see_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
+  void add_keyframe(const KeyframeView& view, MapResult& out);
+  void continue_work(const KeyframeView& view, MapResult& out);
+  bool shows_the_latest_view() const;
+  bool was_just_recognised() const;
   bool is_in_use(std::uint16_t slot) const;
   std::uint16_t least_needed() const;
   void remove(std::uint16_t slot, MapResult& out);
@@ -187,8 +192,15 @@ class Map {
   std::int64_t keyframe_stamp_ns_ = 0;  // of the latest keyframe
   // The latest keyframe has a rolling shutter, and its velocity is known better after the next frame.
   bool refines_velocity_ = false;
-  Se3 T_world_keyframe_;  // as the odometry has it
-  Matrix6 world_covariance_ = Matrix6::Zero();
+  // The latest keyframe of the odometry. If its view is new, it is the latest one of the map.
+  struct Seen {
+    std::int64_t stamp_ns = 0;
+    Se3 T_world_camera;  // as the odometry has it now
+    Matrix6 world_covariance = Matrix6::Zero();
+    // Motion from the latest keyframe of the map, and its covariance.
+    Se3 T_keyframe_camera;
+    Matrix6 covariance = Matrix6::Zero();
+  } seen_;
   // Covariance of the motion since the keyframe that was recognised last, in the axes of the map, and the
   // generalised variance of its loop (0: there is none). While the motion is more certain than a loop, a
   // known place is not searched.
