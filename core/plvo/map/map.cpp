@@ -299,9 +299,6 @@ void Map::find_neighbour(std::uint16_t slot) {
   memory_.neighbours[slot] = nearest;
 }
 
-// The keyframe that a full map removes. It is the later one of the two whose views differ least, but never
-// the first keyframe, which defines the map, nor one whose place is searched. If no two views show the same
-// place, it is the latest keyframe: the old places stay.
 // Whether one of the last keyframes has a loop.
 bool Map::was_just_recognised() const {
   const std::uint32_t latest = memory_.graph.node(memory_.graph.last()).id;
@@ -321,6 +318,9 @@ bool Map::is_in_use(std::uint16_t slot) const {
                      [slot](const Hypothesis& h) { return h.new_slot == slot && !h.joined; });
 }
 
+// The keyframe that a full map removes. It is the later one of the two whose views differ least, but never
+// the first keyframe, which defines the map, nor one that is in use. If no two views show the same
+// place, it is the latest keyframe: the old places stay.
 std::uint16_t Map::least_needed() const {
   std::uint16_t least = memory_.graph.last();
   float distance = 1;
@@ -541,8 +541,9 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   return lies_within(delta, covariance, kCovarianceSlack) ? Relation::kUnrelated : Relation::kContradict;
 }
 
-// Called in the frame after the comparisons, or before the next keyframe. The best of the hypotheses and
-// those that agree with it become loops, if they are enough and no hypothesis contradicts them.
+// Called in the frame after the comparisons, or before a keyframe whose motion was not observed. The best of
+// the hypotheses and those that agree with it become loops, if they are enough and no hypothesis contradicts
+// them.
 void Map::judge(MapResult& out) {
   is_searching_ = false;
   const Hypothesis* best = best_hypothesis();

@@ -11,11 +11,10 @@
 //
 // A keyframe of the odometry becomes one of the map (map_keyframe.hpp), unless its view is nearly that of the
 // one before. It is compared with those that look alike (place_index.hpp), one for each frame, by the
-// estimator (loop_check.hpp). A place is recognised
-// when several comparisons agree on one motion, none contradicts them, and the motion lies within the
-// uncertainty of the map. The loops then join the pose graph (pose_graph.hpp), which is solved in steps, one
-// for each frame. When the map is full, a keyframe is removed whose view another one shows as well; the only
-// view of a place stays.
+// estimator (loop_check.hpp). A place is recognised when several comparisons agree on one motion, none
+// contradicts them, and the motion lies within the uncertainty of the map. The loops then join the pose graph
+// (pose_graph.hpp), which is solved in steps, one for each frame. When the map is full, a keyframe is removed
+// whose view another one shows as well; the only view of a place stays.
 //
 // Like the odometry, a map takes all memory at init, allocates nothing, and gives the same bits everywhere.
 #pragma once
