@@ -172,7 +172,7 @@ TEST(MapKeyframe, PointsThatLeaveTheImageStayAtItsBorder) {
 }
 
 TEST(MapKeyframe, ALoopIsExactWhateverTheVelocities) {
-  const Se3 T_old_new(rotation_exp(Vector3(0.02, 0.05, 0)), Vector3(0.1, 0.02, 0.05));
+  const Se3 T_old_new{rotation_exp(Vector3(0.02, 0.05, 0)), Vector3(0.1, 0.02, 0.05)};
   const auto errors = [&](bool told) {
     Kept kept(kKinectReadout_s);
     kept.see(kOld, Se3(), turning(1.5), told ? turning(1.5) : Vector6::Zero());
