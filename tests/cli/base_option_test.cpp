@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "plvo/host/robot_base.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo::cli {
@@ -12,20 +13,25 @@ namespace {
 const Vector3 kUp(0, 0, 1);
 
 // A camera that looks ahead and 20° down, 0.2 m before the base and 0.5 m above it.
-Se3 mounted() {
-  Matrix3 R_body_optical;
-  R_body_optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return {rotation_exp({0, 0.35, 0}) * R_body_optical, Vector3(0.2, 0, 0.5)};
+Se3 mounted() { return {rotation_exp({0, 0.35, 0}) * rotation_body_optical(), Vector3(0.2, 0, 0.5)}; }
+
+BaseOption option_of(bool level) {
+  BaseOption option;
+  option.level = level;
+  option.T_base_camera = mounted();
+  return option;
 }
 
-// The camera of a base that stands upright, has turned left by `heading` and stands at `place`, in a level
-// world of the odometry: its y axis points down.
-Se3 camera_of(double heading, const Vector3& place) {
-  Matrix3 R_world_up;  // from axes with z up
-  R_world_up << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  const Se3 T_up_base{rotation_exp({0, 0, heading}), place};
-  return Se3{R_world_up, Vector3::Zero()} * T_up_base * mounted();
+// A frame of a base that stands upright, has turned left by `heading` and stands at `place`, in a level world
+// of the odometry: its y axis points down.
+TrackResult tracked(double heading, const Vector3& place) {
+  const Se3 T_world_up{rotation_body_optical().transpose(), Vector3::Zero()};  // from axes with z up
+  TrackResult result;
+  result.state = TrackState::kTracking;
+  result.T_world_camera = T_world_up * Se3{rotation_exp({0, 0, heading}), place} * mounted();
+  return result;
 }
+TrackResult first_frame() { return tracked(0, Vector3::Zero()); }
 
 struct Seen {
   TrackResult result, of_base;
@@ -34,16 +40,10 @@ struct Seen {
 
 // The map is turned about gravity and lies elsewhere.
 Seen see(bool level) {
-  BaseOption option;
-  option.level = level;
-  option.T_base_camera = mounted();
-  TrackResult first;
-  first.state = TrackState::kInitialising;
-  first.T_world_camera = camera_of(0, Vector3::Zero());
-  (void)option.apply(first);
+  BaseOption option = option_of(level);
+  (void)option.apply(first_frame());
   Seen seen;
-  seen.result.state = TrackState::kTracking;
-  seen.result.T_world_camera = camera_of(0.7, {1, 2, 0});
+  seen.result = tracked(0.7, {1, 2, 0});
   seen.map.located = true;
   seen.map.T_map_world = {rotation_exp({0, -0.4, 0}), Vector3(3, 0.1, -2)};
   Matrix6 root;
@@ -62,14 +62,8 @@ TEST(BaseOption, ThePoseInTheMapIsThatOfTheBase) {
     const Se3 T_map_base = seen.map_of_base.T_map_world * seen.of_base.T_world_camera;
     // The distance between two frames of the map does not depend on its axes: the camera sits in the base as
     // before.
-    BaseOption of_other;
-    of_other.level = level;
-    of_other.T_base_camera = mounted();
-    TrackResult origin;
-    origin.state = TrackState::kTracking;
-    origin.T_world_camera = camera_of(0, Vector3::Zero());
-    const Se3 T_odom_base = of_other.apply(origin).T_world_camera;
-    const Se3 T_map_origin = seen.map_of_base.T_map_world * T_odom_base;
+    const TrackResult origin = first_frame();
+    const Se3 T_map_origin = seen.map_of_base.T_map_world * option_of(level).apply(origin).T_world_camera;
     const Se3 moved = T_map_origin.inverse() * T_map_base;
     const Se3 expected = mounted() * (seen.map.T_map_world * origin.T_world_camera).inverse() * T_map_camera *
                          mounted().inverse();

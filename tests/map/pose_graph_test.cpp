@@ -79,11 +79,24 @@ double robust_cost(double s) {
   return s <= k ? s : 2 * std::sqrt(k * s) - k;
 }
 
+// Loops that begin or end at the keyframe in this slot.
+int loops_at(const PoseGraph& graph, std::uint16_t slot) {
+  return static_cast<int>(std::ranges::count_if(
+      graph.loops(), [slot](const PoseGraph::Loop& l) { return l.older == slot || l.newer == slot; }));
+}
+
 // Residual of a measured motion, whitened by its covariance in the axes of its start.
 Vector6 whitened(const Se3& a, const Se3& b, const Se3& T_a_b, const Matrix6& C) {
   const Eigen::Matrix<double, 6, 6> L = Eigen::Matrix<double, 6, 6>(C).llt().matrixL();
   return Eigen::Matrix<double, 6, 6>(L).triangularView<Eigen::Lower>().solve(
       Eigen::Matrix<double, 6, 1>(boxminus(a.inverse() * b, T_a_b)));
+}
+
+// The same of a loop. Its covariance is so many times as large as loops share its two views with it.
+Vector6 whitened(const PoseGraph& graph, const PoseGraph::Loop& loop, const std::vector<Se3>& poses) {
+  const double shared = 0.5 * (loops_at(graph, loop.older) + loops_at(graph, loop.newer));
+  return whitened(poses[graph.node(loop.older).position], poses[graph.node(loop.newer).position],
+                  loop.T_older_newer, shared * loop.covariance);
 }
 
 double cost(const PoseGraph& graph, const std::vector<Se3>& poses) {
@@ -93,9 +106,7 @@ double cost(const PoseGraph& graph, const std::vector<Se3>& poses) {
     sum += whitened(poses[k - 1], poses[k], node.T_previous_keyframe, node.motion_covariance).squaredNorm();
   }
   for (const PoseGraph::Loop& loop : graph.loops())
-    sum += robust_cost(whitened(poses[graph.node(loop.older).position],
-                                poses[graph.node(loop.newer).position], loop.T_older_newer, loop.covariance)
-                           .squaredNorm());
+    sum += robust_cost(whitened(graph, loop, poses).squaredNorm());
   return sum;
 }
 
@@ -118,9 +129,7 @@ std::vector<Se3> dense_solution(const PoseGraph& graph) {
         const PoseGraph::Node& node = graph.node(graph.slot_at(k));
         r.segment<6>(6 * e) = whitened(at[k - 1], at[k], node.T_previous_keyframe, node.motion_covariance);
       } else {
-        const PoseGraph::Loop& loop = graph.loops()[k - poses.size()];
-        Vector6 w = whitened(at[graph.node(loop.older).position], at[graph.node(loop.newer).position],
-                             loop.T_older_newer, loop.covariance);
+        Vector6 w = whitened(graph, graph.loops()[k - poses.size()], at);
         const double s = w.squaredNorm(), limit = chi_square_quantile(6, 0.95);
         if (s > limit) w *= std::sqrt(std::sqrt(limit / s));  // by the root of the weight
         r.segment<6>(6 * e) = w;
@@ -148,14 +157,16 @@ std::vector<Se3> dense_solution(const PoseGraph& graph) {
   return poses;
 }
 
-TEST(PoseGraph, FindsTheSolutionOfADenseSolver) {
+using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+// A circle with loops between these pairs of keyframes.
+void compare_with_dense_solver(const Pairs& loops) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const std::vector<Se3> truth = circle(25);
     Graph g(30);
     append_all(g.graph, truth, seed);
     Random random(seed, 7);
-    for (const auto& [a, b] : {std::pair{0, 24}, {3, 20}, {1, 23}}) {
-      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    for (const auto& [i, j] : loops) {
       g.graph.add_loop(g.graph.slot_at(i), g.graph.slot_at(j),
                        boxplus(truth[i].inverse() * truth[j], draw(random, 0.01, 0.01)),
                        covariance(0.01, 0.01));
@@ -174,6 +185,13 @@ TEST(PoseGraph, FindsTheSolutionOfADenseSolver) {
     EXPECT_LT(apart, 5e-3);
     EXPECT_LT((solved.back().t - truth.back().t).norm(), 0.03);
   }
+}
+
+TEST(PoseGraph, FindsTheSolutionOfADenseSolver) { compare_with_dense_solver({{0, 24}, {3, 20}, {1, 23}}); }
+
+// Their errors are not independent: those of a view are in all of its loops.
+TEST(PoseGraph, LoopsOfOneViewCountByTheirOwnShare) {
+  compare_with_dense_solver({{0, 24}, {0, 23}, {0, 22}, {0, 21}, {0, 20}, {3, 18}, {4, 18}});
 }
 
 TEST(PoseGraph, BoundsTheWorkOfAStep) {

@@ -144,7 +144,7 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
   return out;
 }
 
-// In a frame that brings no keyframe.
+// The work of a frame in which no keyframe joins.
 void Map::continue_work(const KeyframeView& view, MapResult& out) {
   if (refines_velocity_ && view.features != nullptr && view.features->stamp_ns == keyframe_stamp_ns_)
     memory_.features.set(memory_.graph.last(), view.features->points, view.features->lines, check_.camera,
@@ -210,13 +210,12 @@ void Map::add_keyframe(const KeyframeView& view, MapResult& out) {
   seen_.T_keyframe_camera = Se3();
   seen_.covariance.setZero();
   // A search goes on to its end, unless the motion from its keyframe is not observed.
-  const bool is_observed = !exceeds(covariance, kObservedMotion);
-  if (is_searching_ && !is_observed) {
-    judge(out);
+  if (exceeds(covariance, kObservedMotion)) {
+    if (is_searching_) judge(out);
     is_searching_ = false;
+    // No observed motion leads to the hypotheses from before.
+    hypothesis_count_ = 0;
   }
-  // No observed motion leads to the hypotheses from before.
-  if (!is_observed) hypothesis_count_ = 0;
   // Read before a keyframe is removed, because that may be the latest one.
   const bool begins_part = memory_.graph.size() == 0 || !follows_camera_;
   const std::uint32_t part =
@@ -299,28 +298,29 @@ void Map::find_neighbour(std::uint16_t slot) {
   memory_.neighbours[slot] = nearest;
 }
 
-// Whether one of the last keyframes has a loop.
+// Whether hypotheses of a keyframe can still be judged together with those of the latest one.
+bool Map::is_recent(std::uint16_t slot) const {
+  return memory_.graph.node(slot).id + kJudgedKeyframes >= memory_.graph.node(memory_.graph.last()).id;
+}
+
 bool Map::was_just_recognised() const {
-  const std::uint32_t latest = memory_.graph.node(memory_.graph.last()).id;
   const std::span<const Hypothesis> all = hypotheses();
-  return std::any_of(all.begin(), all.end(), [&](const Hypothesis& h) {
-    return h.joined && memory_.graph.node(h.new_slot).id + kJudgedKeyframes >= latest;
-  });
+  return std::any_of(all.begin(), all.end(),
+                     [this](const Hypothesis& h) { return h.joined && is_recent(h.new_slot); });
 }
 
 // Whether a keyframe is searched, or waits for others that agree with it.
 bool Map::is_in_use(std::uint16_t slot) const {
   if (is_searching_ && slot == searched_) return true;
-  const std::uint32_t latest = memory_.graph.node(memory_.graph.last()).id;
-  if (memory_.graph.node(slot).id + kJudgedKeyframes < latest) return false;
+  if (!is_recent(slot)) return false;
   const std::span<const Hypothesis> all = hypotheses();
   return std::any_of(all.begin(), all.end(),
                      [slot](const Hypothesis& h) { return h.new_slot == slot && !h.joined; });
 }
 
 // The keyframe that a full map removes. It is the later one of the two whose views differ least, but never
-// the first keyframe, which defines the map, nor one that is in use. If no two views show the same
-// place, it is the latest keyframe: the old places stay.
+// the first keyframe, which defines the map, nor one that is in use. If no two views show the same place, it
+// is the latest keyframe: the old places stay.
 std::uint16_t Map::least_needed() const {
   std::uint16_t least = memory_.graph.last();
   float distance = 1;

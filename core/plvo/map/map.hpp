@@ -155,6 +155,7 @@ class Map {
   void add_keyframe(const KeyframeView& view, MapResult& out);
   void continue_work(const KeyframeView& view, MapResult& out);
   bool shows_the_latest_view() const;
+  bool is_recent(std::uint16_t slot) const;
   bool was_just_recognised() const;
   bool is_in_use(std::uint16_t slot) const;
   std::uint16_t least_needed() const;
