@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <initializer_list>
 #include <string_view>
+#include <vector>
 
 #include "tracked_sequence.hpp"
 
@@ -169,6 +170,38 @@ TEST(HardSequences, ARobotThatMovesAtADeskDoesNotFollowABoard) {
 // of the corridor decide (motion_estimator.hpp).
 TEST(HardSequences, ARobotThatMovesInACorridorDoesNotFollowABoard) {
   expect_the_room_behind_a_board(SceneName::kCorridor, {8, 9}, 0.05);
+}
+
+// A board moves before a corridor in which the light goes out. The board is lit and has most of the features,
+// and those agree with each other. But none of the landmarks that agreed with the camera's motion is found.
+TEST(HardSequences, AViewWithoutTheProvenLandmarksIsNotTracked) {
+  constexpr std::size_t kDark = 34;
+  constexpr double kBehindTheBoard_m = 1.6;
+  for (const std::uint64_t seed : {5, 7}) {
+    SimulatorOptions options = hard_options(static_cast<int>(kDark) + 1, {"board"});
+    options.seed = seed;
+    std::vector<std::uint8_t> colour;
+    const auto switch_off = [&](RgbdFrame& frame, std::size_t i) {
+      if (i < kDark) return;
+      ASSERT_EQ(frame.colour.format, PixelFormat::kRgb8);
+      const auto bytes = static_cast<std::size_t>(frame.colour.stride_bytes * frame.colour.height);
+      colour.assign(frame.colour.data, frame.colour.data + bytes);
+      for (int y = 0; y < frame.colour.height; ++y)
+        for (int x = 0; x < frame.colour.width; ++x) {
+          const double depth_m = frame.depth.metres_per_unit * frame.depth.data[y * frame.depth.stride + x];
+          if (depth_m > 0 && depth_m < kBehindTheBoard_m) continue;
+          std::uint8_t* const pixel = colour.data() + y * frame.colour.stride_bytes + 3 * x;
+          for (int c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(pixel[c] / 50);
+        }
+      frame.colour.data = colour.data();
+    };
+    const test::TrackedSequence tracked = test::track_sequence(
+        options, test::kTestLimits, Config{}, 0, [] { return 0; }, switch_off);
+    ASSERT_EQ(tracked.results.size(), kDark + 1);
+    EXPECT_EQ(tracked.results[kDark - 1].state, TrackState::kTracking);
+    EXPECT_GT(tracked.results[kDark].points.matched, 100) << "the board is in view";
+    EXPECT_EQ(tracked.results[kDark].state, TrackState::kLost);
+  }
 }
 
 // Nine of ten points lie on the part of the robot and say that the camera stands still. What little is seen

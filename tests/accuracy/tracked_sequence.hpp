@@ -46,9 +46,11 @@ struct TrackedSequence {
 };
 
 // stamp_error_ns: by how much each stamp but the first is wrong; the truth is that of the wrong stamp.
+// change(frame, i): changes the i-th frame before it is tracked.
 inline TrackedSequence track_sequence(
     const SimulatorOptions& options, const Limits& limits, const Config& config, double stamp_sigma_s = 0,
-    const std::function<std::int64_t()>& stamp_error_ns = [] { return 0; }) {
+    const std::function<std::int64_t()>& stamp_error_ns = [] { return 0; },
+    const std::function<void(RgbdFrame&, std::size_t)>& change = [](RgbdFrame&, std::size_t) {}) {
   TrackedSequence tracked;
   std::unique_ptr<SimulatedCamera> camera;
   const Status created = SimulatedCamera::create(options, camera);
@@ -64,6 +66,7 @@ inline TrackedSequence track_sequence(
   while (camera->next(frame).ok()) {
     if (!tracked.truth.empty()) frame.stamp_ns += stamp_error_ns();
     tracked.truth.push_back(camera->ground_truth(frame.stamp_ns));
+    change(frame, tracked.results.size());
     tracked.results.push_back(odometry.track(frame));
   }
   return tracked;

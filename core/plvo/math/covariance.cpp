@@ -11,19 +11,17 @@ namespace plvo {
 namespace {
 
 // Inverse standard deviations; 0 for a variance that is not positive.
-template <int N>
-Vector<N> inverse_deviations(const Matrix<N, N>& C) {
-  Vector<N> inverse;
-  for (int i = 0; i < N; ++i) inverse[i] = C(i, i) > 0 ? 1 / sqrt(C(i, i)) : 0;
+Vector6 inverse_deviations(const Matrix6& C) {
+  Vector6 inverse;
+  for (int i = 0; i < 6; ++i) inverse[i] = C(i, i) > 0 ? 1 / sqrt(C(i, i)) : 0;
   return inverse;
 }
 
 // Correlation matrix; an entry without variance has 1 with itself and 0 with the others.
-template <int N>
-Matrix<N, N> correlations(const Matrix<N, N>& C, const Vector<N>& inverse) {
-  Matrix<N, N> unit;
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j < N; ++j)
+Matrix6 correlations(const Matrix6& C, const Vector6& inverse) {
+  Matrix6 unit;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
       unit(i, j) =
           i == j ? 1.0 : 0.5 * (C(i, j) * inverse[i] * inverse[j] + C(j, i) * inverse[i] * inverse[j]);
   return unit;
@@ -31,8 +29,8 @@ Matrix<N, N> correlations(const Matrix<N, N>& C, const Vector<N>& inverse) {
 
 // Not inlined: its matrices would otherwise be on the stack of callers whose covariance needs no repair.
 [[gnu::noinline]] void repair(Matrix6& C) {
-  const Vector6 inverse = inverse_deviations<6>(C);
-  const Matrix6 unit = correlations<6>(C, inverse);
+  const Vector6 inverse = inverse_deviations(C);
+  const Matrix6 unit = correlations(C, inverse);
   // A unit diagonal bounds the correlations: entries beyond ±1 come from a variance that is pure rounding.
   const SymmetricEigen<6> eigen = symmetric_eigen<6>(unit.cwiseMax(-1).cwiseMin(1));
   for (int i = 0; i < 6; ++i)
@@ -43,24 +41,6 @@ Matrix<N, N> correlations(const Matrix<N, N>& C, const Vector<N>& inverse) {
       const double entry = inverse[i] > 0 && inverse[j] > 0 ? sum / (inverse[i] * inverse[j]) : 0;
       C(i, j) = C(j, i) = entry;
     }
-}
-
-template <int N>
-bool meets_the_conditions(const Matrix<N, N>& C) {
-  if (!C.allFinite() || !(C.diagonal().minCoeff() >= 0)) return false;
-  const Vector<N> inverse = inverse_deviations<N>(C);
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j < i; ++j) {
-      const bool unsure = inverse[i] > 0 && inverse[j] > 0;
-      if (!unsure && (C(i, j) != 0 || C(j, i) != 0)) return false;
-      const double apart = C(i, j) - C(j, i);
-      if (unsure && !((apart < 0 ? -apart : apart) * inverse[i] * inverse[j] <= kCovarianceTolerance))
-        return false;
-    }
-  Matrix<N, N> unit = correlations<N>(C, inverse);
-  unit.diagonal().array() += kCovarianceTolerance;
-  Cholesky<N> cholesky;
-  return cholesky.factor(unit);
 }
 
 }  // namespace
@@ -75,8 +55,28 @@ double generalised_variance(const Matrix6& C) {
   return det;
 }
 
-bool is_covariance(const Matrix3& C) { return meets_the_conditions<3>(C); }
-bool is_covariance(const Matrix6& C) { return meets_the_conditions<6>(C); }
+bool is_covariance(const Matrix3& C) {
+  Matrix6 with_zeros = Matrix6::Zero();
+  with_zeros.block<3, 3>(0, 0) = C;
+  return is_covariance(with_zeros);
+}
+
+bool is_covariance(const Matrix6& C) {
+  if (!C.allFinite() || !(C.diagonal().minCoeff() >= 0)) return false;
+  const Vector6 inverse = inverse_deviations(C);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < i; ++j) {
+      const bool unsure = inverse[i] > 0 && inverse[j] > 0;
+      if (!unsure && (C(i, j) != 0 || C(j, i) != 0)) return false;
+      const double apart = C(i, j) - C(j, i);
+      if (unsure && !((apart < 0 ? -apart : apart) * inverse[i] * inverse[j] <= kCovarianceTolerance))
+        return false;
+    }
+  Matrix6 unit = correlations(C, inverse);
+  unit.diagonal().array() += kCovarianceTolerance;
+  Cholesky<6> cholesky;
+  return cholesky.factor(unit);
+}
 
 bool make_covariance(Matrix6& C) {
   if (is_covariance(C)) return true;

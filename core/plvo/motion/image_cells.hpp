@@ -15,8 +15,8 @@ struct ImageCells {
   static constexpr int kSide = 32;         // cells along each side of the grid
   static constexpr std::size_t kCount = std::size_t{kSide} * kSide;
 
-  // The cell of a point in camera coordinates, z > 0; row-major.
-  static std::size_t at(const Vector3& p) {
+  // The cell of a point in camera coordinates, z > 0; row-major. Not inlined: called at many places.
+  [[gnu::noinline]] static std::size_t at(const Vector3& p) {
     const auto along = [](double x) {
       return static_cast<std::size_t>(std::clamp(x / kWidth + kSide / 2, 0.0, kSide - 1.0));
     };

@@ -34,9 +34,13 @@ constexpr double kMinEigenvalueRatio = 1e-10;
 // its matches contradict the motion by many standard deviations. The first round accepts twenty times the
 // distance.
 constexpr double kScalesAlone[] = {400, 20, 1};
-// A kind of landmark that decides alone is held at the common motion by 1/kFavoured of its information. In a
-// direction that the kind does not measure, the motion then stays where it is.
+// A kind of landmark that decides alone is held at the common motion, with kFavoured times its covariance
+// plus that of these SDs. In a direction that the kind does not measure, the motion then stays where it is.
+// The SDs are for a wrong motion that many features agree on: surfaces would be held there, because its
+// covariance is small.
 constexpr double kFavoured = 1024;
+constexpr double kHeld_m = 0.01;
+constexpr double kHeld_rad = 0.005;
 
 double largest_eigenvalue(const Matrix3& C) { return symmetric_eigen<3>(C).values.maxCoeff(); }
 
@@ -275,7 +279,9 @@ class ConsensusSolver {
   // anew, in rounds that lead away from T_, each with one Gauss–Newton step. Surfaces have one round: they
   // are judged by a gate of their own (SurfaceConstraints).
   Vector6 shift_of(CostTerm& term, const RobustKernel& kernel) {
-    PriorConstraint held(T_, kFavoured * estimate_.C_H);
+    Matrix6 hold = kFavoured * estimate_.C_H;
+    for (int k = 0; k < 6; ++k) hold(k, k) += k < 3 ? kHeld_m * kHeld_m : kHeld_rad * kHeld_rad;
+    PriorConstraint held(T_, hold);
     CostTerm* const alone[] = {&term, &held};
     MotionProblem::Kernels kernels;
     kernels[0] = kernel;

@@ -130,11 +130,10 @@ void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool is
   const double since_last_s = static_cast<double>(since_last_ns) * 1e-9;
   if (learns && !result.relocalised && !result.restarted)
     disagreement_.note(last.pose, pose, motion.T_current_reference, motion.C_H, since_last_s);
-  if (disagreement_.inflation() > 1) {
-    covariance *= disagreement_.inflation();
-    pose = advance(from, motion.T_current_reference, covariance, shifts);
-  }
   result.disagreement = disagreement_.inflation();
+  pose.covariance += transform_covariance(derivative_by_motion(pose, motion.T_current_reference),
+                                          (result.disagreement - 1) * covariance);
+  covariance *= result.disagreement;
   parallax_.note(tracked.depth_shift, since_last_s);
   if (result.status.message()[0] == '\0')
     result.status = tell_disagreement(parallax_.fails(), result.disagreement);

@@ -15,6 +15,14 @@ namespace {
 // little: it is not refused, but other motions are searched as well.
 constexpr double kAcceptedShareByImage = 0.1;
 constexpr double kAcceptedShareByFeatures = 0.2;
+// A motion that explains less than this share of the evidence of the proven landmarks in view is not that of
+// the camera, if at least kFewProven are in view. In a scene at rest the least share was 0.12, of 1,100
+// frames; where an object is followed instead of the scene it is mostly 0.
+constexpr double kLeastOfProven = 0.1;
+constexpr int kFewProven = 10;
+// Factor on the evidence of the other landmarks when motions are compared: those of an object that comes into
+// view have not agreed with the camera's motion yet.
+constexpr double kWorthOfUnproven = 0.5;
 // If the estimate is another motion than that of the start, features are registered again with the estimate,
 // at most this many times in all: features that follow the new motion are then found.
 constexpr int kMostRegistrations = 3;
@@ -46,12 +54,14 @@ constexpr double kWideSearch_px = 120;
 // Evidence (coverage.hpp) of the inliers, and its share of that of all features in view.
 struct Explained {
   double evidence = 0;
+  double proven = 0;  // evidence of landmarks that agreed with the camera's motion before
   double share = 0;
+  bool explains_proven = true;  // enough of the proven landmarks in view
   // Factor on the evidence when starts are compared. It plays no part in the decision whether the
   // covariance contains a rival.
   double worth = 1;
 
-  double weight() const { return worth * evidence; }
+  double weight() const { return worth * (proven + kWorthOfUnproven * (evidence - proven)); }
 };
 
 // Calls visit(extent) for the 3D points and lines of a reference.
@@ -62,39 +72,59 @@ void for_each_extent(const FrameFeatures& features, const Visit& visit) {
   for (const Line3d& line : features.lines.lines_3d()) visit(extent_of(line));
 }
 
+// Sums of the evidence of features.
+struct EvidenceSum {
+  double all = 0, proven = 0;  // m; of all features, of proven landmarks
+  int proven_count = 0;
+
+  // Not inlined: called at several places.
+  [[gnu::noinline]] void add(const Coverage& coverage, const Extent& extent) {
+    const double evidence = coverage.evidence(extent);
+    all += evidence;
+    if (!extent.record.proven()) return;
+    proven += evidence;
+    ++proven_count;
+  }
+};
+
 // What the motion from the base explains of the view of all references. Not inlined: the cells would
 // otherwise stay on the stack during the search.
 [[gnu::noinline]] Explained explained_by(const Se3& T_current_base, std::span<const Reference> references,
                                          const ReferenceTracking& tracking, const CameraModel& camera) {
   Coverage coverage;
-  Explained found;
-  double all = 0;
+  EvidenceSum view, found;
   for (std::size_t r = 0; r < references.size(); ++r) {
     const FrameFeatures& features = *references[r].features;
     const ReferenceTracks& tracks = tracking.tracks(r);
     const Se3 T_current_reference = T_current_base * references[r].pose.T_reference_base.inverse();
-    const auto each_in_view = [&](const auto& visit) {
+    coverage.clear();
+    for (const bool are_counted : {false, true})
       for_each_extent(features, [&](const Extent& extent) {
         const Vector3 here = T_current_reference * extent.middle;
         if (!(here.z() > kNearestSeen_m)) return;
         const Vector2 at = project(camera.pinhole, here);
-        if (at.x() >= 0 && at.y() >= 0 && at.x() <= camera.width - 1 && at.y() <= camera.height - 1)
-          visit(extent);
+        if (!(at.x() >= 0 && at.y() >= 0 && at.x() <= camera.width - 1 && at.y() <= camera.height - 1))
+          return;
+        if (are_counted)
+          view.add(coverage, extent);
+        else
+          coverage.count(extent);
       });
-    };
-    coverage.clear();
-    each_in_view([&](const Extent& extent) { coverage.count(extent); });
-    each_in_view([&](const Extent& extent) { all += coverage.evidence(extent); });
     for (std::size_t i = 0; i < tracks.points.matches.size(); ++i)
       if (tracks.point_inliers[i] != 0)
-        found.evidence +=
-            coverage.evidence(extent_of(features.points.points[tracks.points.matches[i].reference]));
+        found.add(coverage, extent_of(features.points.points[tracks.points.matches[i].reference]));
     for (std::size_t i = 0; i < tracks.lines.size(); ++i)
       if (tracks.line_inliers[i] != 0)
-        found.evidence += coverage.evidence(extent_of(features.lines.lines_3d()[tracks.lines[i].reference]));
+        found.add(coverage, extent_of(features.lines.lines_3d()[tracks.lines[i].reference]));
   }
-  if (all > 0) found.share = found.evidence / all;
-  return found;
+  Explained explained;
+  explained.evidence = found.all;
+  explained.proven = found.proven;
+  if (view.all > 0) explained.share = found.all / view.all;
+  explained.explains_proven = view.proven_count < kFewProven ||
+                              found.proven >= kLeastOfProven * view.proven ||
+                              found.proven >= kLeastOfProven * found.all;
+  return explained;
 }
 
 // Mean distance, in the plane z = 1, between the positions that two motions give the features of a
@@ -149,7 +179,7 @@ class MotionSearch {
     const Explained found = explain(start);
     if (has_rival && tracked_.ok() && is_other_motion(rival, tracked_.motion.T_current_reference))
       tracked_.motion.contain(boxminus(rival, tracked_.motion.T_current_reference));
-    if (found.share < kAcceptedShareByImage) return false;
+    if (found.share < kAcceptedShareByImage || !found.explains_proven) return false;
     // An object may cover most of the image. The search is therefore repeated from the prediction,
     // which may lead to another motion although it is near.
     if (!are_apart &&
@@ -171,7 +201,9 @@ class MotionSearch {
       accepted = find(reference, current_.predicted.sensed.known() ? reference.T_current_predicted : Se3{},
                       kWideSearch_px);
     }
-    if (!accepted) take_best();
+    if (accepted) return;
+    take_best();
+    if (!best_.explained.explains_proven) tracked_.motion.status = StatusCode::kNoConsensus;
   }
 
  private:
@@ -215,6 +247,7 @@ class MotionSearch {
   Explained explain(const Se3& start, double times = 1) {
     Explained explained;
     if (refine(start)) explained = explained_by_tracked();
+    if (!explained.explains_proven) explained.worth *= kWorthOfContradicted;
     last_is_best_ = explained.weight() > times * best_.explained.weight();
     if (last_is_best_) best_ = {start, tracked_.motion.T_current_reference, explained};
     return explained;
@@ -253,8 +286,10 @@ class MotionSearch {
     if (!is_registered()) return true;
     const Se3 start = tracked_.motion.T_current_reference * from.pose.T_reference_base;
     // A motion is also accepted if two searches lead to it.
-    if (best_.explained.evidence > 0 && !is_other_motion(start, best_.motion)) return refine(best_.start);
-    return explain(start).share >= kAcceptedShareByFeatures;
+    if (best_.explained.evidence > 0 && !is_other_motion(start, best_.motion))
+      return best_.explained.explains_proven && refine(best_.start);
+    const Explained found = explain(start);
+    return found.share >= kAcceptedShareByFeatures && found.explains_proven;
   }
 
   const CurrentFrame& current_;
