@@ -195,8 +195,8 @@ TEST(HardSequences, AViewWithoutTheProvenLandmarksIsNotTracked) {
         }
       frame.colour.data = colour.data();
     };
-    const test::TrackedSequence tracked = test::track_sequence(
-        options, test::kTestLimits, Config{}, 0, [] { return 0; }, switch_off);
+    const test::TrackedSequence tracked =
+        test::track_sequence(options, test::kTestLimits, Config{}, 0, switch_off);
     ASSERT_EQ(tracked.results.size(), kDark + 1);
     EXPECT_EQ(tracked.results[kDark - 1].state, TrackState::kTracking);
     EXPECT_GT(tracked.results[kDark].points.matched, 100) << "the board is in view";

@@ -55,8 +55,10 @@ test::TrackedSequence track_with_stamps(double stamp_sigma_s) {
   std::normal_distribution<double> normal;
   Config config;
   config.noise.common_mode_share = 0;
-  return test::track_sequence(SceneName::kDesk, kFrames, config, stamp_sigma_s,
-                              [&] { return static_cast<std::int64_t>(1e9 * kSigma_s * normal(random)); });
+  const auto change_stamp = [&](RgbdFrame& frame, std::size_t i) {
+    if (i > 0) frame.stamp_ns += static_cast<std::int64_t>(1e9 * kSigma_s * normal(random));
+  };
+  return test::track_sequence(SceneName::kDesk, kFrames, config, stamp_sigma_s, change_stamp);
 }
 
 struct Means {

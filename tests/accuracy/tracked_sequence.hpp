@@ -45,12 +45,12 @@ struct TrackedSequence {
   }
 };
 
-// stamp_error_ns: by how much each stamp but the first is wrong; the truth is that of the wrong stamp.
-// change(frame, i): changes the i-th frame before it is tracked.
+// Changes the i-th frame before it is tracked. The truth is that of its stamp after the change.
+using FrameChange = std::function<void(RgbdFrame& frame, std::size_t i)>;
+
 inline TrackedSequence track_sequence(
     const SimulatorOptions& options, const Limits& limits, const Config& config, double stamp_sigma_s = 0,
-    const std::function<std::int64_t()>& stamp_error_ns = [] { return 0; },
-    const std::function<void(RgbdFrame&, std::size_t)>& change = [](RgbdFrame&, std::size_t) {}) {
+    const FrameChange& change = [](RgbdFrame&, std::size_t) {}) {
   TrackedSequence tracked;
   std::unique_ptr<SimulatedCamera> camera;
   const Status created = SimulatedCamera::create(options, camera);
@@ -64,9 +64,8 @@ inline TrackedSequence track_sequence(
   EXPECT_TRUE(status.ok()) << status.message();
   RgbdFrame frame;
   while (camera->next(frame).ok()) {
-    if (!tracked.truth.empty()) frame.stamp_ns += stamp_error_ns();
-    tracked.truth.push_back(camera->ground_truth(frame.stamp_ns));
     change(frame, tracked.results.size());
+    tracked.truth.push_back(camera->ground_truth(frame.stamp_ns));
     tracked.results.push_back(odometry.track(frame));
   }
   return tracked;
@@ -84,9 +83,9 @@ inline SimulatorOptions qvga_options(SceneName scene, int frames) {
 // At 320×240; no frame may be lost.
 inline TrackedSequence track_sequence(
     SceneName scene, int frames, const Config& config, double stamp_sigma_s = 0,
-    const std::function<std::int64_t()>& stamp_error_ns = [] { return 0; }) {
+    const FrameChange& change = [](RgbdFrame&, std::size_t) {}) {
   TrackedSequence tracked =
-      track_sequence(qvga_options(scene, frames), kTestLimits, config, stamp_sigma_s, stamp_error_ns);
+      track_sequence(qvga_options(scene, frames), kTestLimits, config, stamp_sigma_s, change);
   for (const TrackResult& result : tracked.results)
     EXPECT_NE(result.state, TrackState::kLost) << result.status.message();
   return tracked;
