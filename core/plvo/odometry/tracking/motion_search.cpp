@@ -21,9 +21,6 @@ constexpr double kAcceptedShareByFeatures = 0.2;
 // the scene both are mostly 0.
 constexpr double kLeastOfProven = 0.1;
 constexpr int kFewProven = 10;
-// Factor on the evidence of the other landmarks when motions are compared: those of an object that comes into
-// view have not agreed with the camera's motion yet.
-constexpr double kWorthOfUnproven = 0.5;
 // If the estimate is another motion than that of the start, features are registered again with the estimate,
 // at most this many times in all: features that follow the new motion are then found.
 constexpr int kMostRegistrations = 3;
@@ -37,17 +34,9 @@ constexpr double kSameStart = 4.0 / 525;
 // because it is nearer to that motion than the prediction, which is 4 px off. The prediction is
 // taken only if it explains clearly more.
 constexpr double kOtherMotion = 2.0 / 525;
-// Factor on the evidence of a motion that a prior contradicts, when motions are compared. Such a
-// motion may still be accepted, because the prior may be wrong.
+// Factor on the evidence of a motion that a prior or the proven landmarks contradict, when motions are
+// compared. Such a motion may still be accepted, because the prior may be wrong.
 constexpr double kWorthOfContradicted = 0.25;
-// A motion is a jolt if it would need an acceleration of more than this (about g): from rest, or
-// relative to the translation that wheels measured. A robot does not accelerate like this, and a
-// hand seldom does. At 30 frames a second, an object that comes into view at 0.4 m/s makes the
-// camera seem to do so. The evidence of a jolt is multiplied by kWorthOfJolt. A camera is at rest
-// if the prediction moves features by less than kAtRest in the plane z = 1 (0.5 px of a Kinect).
-constexpr double kMostAcceleration_m_per_s2 = 10;
-constexpr double kWorthOfJolt = 0.5;
-constexpr double kAtRest = 0.5 / 525;
 // When tracking fails, features are searched this far from where the propagated prior puts them or, without
 // one, from their old positions. The velocity is not used.
 constexpr double kWideSearch_px = 120;
@@ -55,14 +44,8 @@ constexpr double kWideSearch_px = 120;
 // Evidence (coverage.hpp) of the inliers, and its share of that of all features in view.
 struct Explained {
   double evidence = 0;
-  double proven = 0;  // evidence of landmarks that agreed with the camera's motion before
   double share = 0;
   bool explains_proven = true;  // enough of the proven landmarks in view
-  // Factor on the evidence when starts are compared. It plays no part in the decision whether the
-  // covariance contains a rival.
-  double worth = 1;
-
-  double weight() const { return worth * (proven + kWorthOfUnproven * (evidence - proven)); }
 };
 
 // Calls visit(extent) for the 3D points and lines of a reference.
@@ -120,7 +103,6 @@ struct EvidenceSum {
   }
   Explained explained;
   explained.evidence = found.all;
-  explained.proven = found.proven;
   if (view.all > 0) explained.share = found.all / view.all;
   explained.explains_proven = view.proven_count < kFewProven ||
                               found.proven >= kLeastOfProven * view.proven ||
@@ -149,13 +131,6 @@ bool is_findable(const Reference& reference) {
   return points.described || points.keypoints.empty();
 }
 
-// Whether the velocity is so certain that inertia counts: wheels measure it, or the camera was at rest.
-bool has_certain_velocity(const CurrentFrame& current, const Reference& latest) {
-  if (current.prior.translation) return true;
-  return latest.timing.last.known() &&
-         !(distance_between(latest.T_current_predicted, Se3{}, *latest.features) > kAtRest);
-}
-
 class MotionSearch {
  public:
   // All must outlive this object. tracked: what the last estimate found.
@@ -164,8 +139,7 @@ class MotionSearch {
         tracking_(tracking),
         tracked_(tracked),
         references_(current.predicted.references),
-        latest_(references_[latest_of(references_)]),
-        inertia_counts_(has_certain_velocity(current, latest_)) {}
+        latest_(references_[latest_of(references_)]) {}
 
   // Tries the motion that aligns the images. Returns whether it is accepted.
   bool from_image() {
@@ -183,8 +157,7 @@ class MotionSearch {
     if (found.share < kAcceptedShareByImage || !found.explains_proven) return false;
     // An object may cover most of the image. The search is therefore repeated from the prediction,
     // which may lead to another motion although it is near.
-    if (!are_apart &&
-        (tracked_.motion.explained < kWorldAtRest || tracked_.motion.contradicted || found.worth < 1)) {
+    if (!are_apart && (tracked_.motion.explained < kWorldAtRest || tracked_.motion.contradicted)) {
       explain(by_prediction, 1 / kComparableShare);
       take_best();
     }
@@ -219,19 +192,7 @@ class MotionSearch {
     Explained explained =
         explained_by(tracked_.motion.T_current_reference, references_, tracking_, current_.context.camera);
     if (tracked_.motion.contradicted) explained.evidence *= kWorthOfContradicted;
-    if (is_jolt()) explained.worth = kWorthOfJolt;
     return explained;
-  }
-
-  // Whether the position differs from the predicted one by more than inertia allows.
-  bool is_jolt() const {
-    if (!inertia_counts_) return false;
-    const Se3 T_current_latest =
-        tracked_.motion.T_current_reference * latest_.pose.T_reference_base.inverse();
-    const Vector3 apart = T_current_latest.inverse().t - latest_.T_current_predicted.inverse().t;
-    const double seconds = 1e-9 * static_cast<double>(latest_.timing.since_last_ns);
-    const double most_m = kMostAcceleration_m_per_s2 * seconds * seconds;
-    return apart.squaredNorm() > most_m * most_m;
   }
 
   bool refine(Se3 T_current_base) {
@@ -248,8 +209,8 @@ class MotionSearch {
   Explained explain(const Se3& start, double times = 1) {
     Explained explained;
     if (refine(start)) explained = explained_by_tracked();
-    if (!explained.explains_proven) explained.worth *= kWorthOfContradicted;
-    last_is_best_ = explained.weight() > times * best_.explained.weight();
+    if (!explained.explains_proven) explained.evidence *= kWorthOfContradicted;
+    last_is_best_ = explained.evidence > times * best_.explained.evidence;
     if (last_is_best_) best_ = {start, tracked_.motion.T_current_reference, explained};
     return explained;
   }
@@ -275,7 +236,7 @@ class MotionSearch {
     rival = tracked_.motion.T_current_reference;
     const bool is_other = !image_leads || is_other_motion(start, rival);
     const double least = is_other ? kComparableShare : 1 / kComparableShare;
-    if (predicted.weight() > least * by_image.weight()) std::swap(start, rival);
+    if (predicted.evidence > least * by_image.evidence) std::swap(start, rival);
     return is_other && are_comparable(predicted.evidence, by_image.evidence);
   }
 
@@ -298,7 +259,6 @@ class MotionSearch {
   TrackedMotion& tracked_;
   std::span<const Reference> references_;
   const Reference& latest_;
-  const bool inertia_counts_;
   // The motion that explains most so far, the start that led to it, and what it explains.
   struct {
     Se3 start, motion;
