@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dense.hpp"
+#include "motion_information.hpp"
 #include "plvo/odometry/features/feature_extraction.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
 #include "plvo/replay/recorded_camera.hpp"
@@ -37,13 +38,6 @@ struct Fusion {
   MotionEstimate motion;
   Matrix6 I_P, I_L;
 };
-
-// The information of the inliers of a set, with the weights that the last estimate left.
-Matrix6 information_of(const ConstraintSet& set, const Se3& T) {
-  JointInformation sum;
-  (void)set.linearize(T, {}, RobustKernel(RobustLoss::kHuber, set.dof()), sum);
-  return sum.H.block<6, 6>(0, 0);
-}
 
 // Finds the matches by the stages of the odometry itself.
 class Pairs {
@@ -110,8 +104,8 @@ class Pairs {
     start.search_beside = false;  // C_H then contains no other motion
     start.registered = config_.points.registered;
     estimate_motion(sets, {}, {}, config_.motion, lm, 1, start, memory, fusion.motion);
-    fusion.I_P = information_of(points, fusion.motion.T_current_reference);
-    fusion.I_L = information_of(lines, fusion.motion.T_current_reference);
+    fusion.I_P = test::information_of(points, fusion.motion.T_current_reference);
+    fusion.I_L = test::information_of(lines, fusion.motion.T_current_reference);
     return fusion;
   }
 

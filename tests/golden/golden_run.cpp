@@ -25,6 +25,7 @@ struct GoldenCase {
   int dark_frames = 1;
   double readout_s = 0;
   DepthTiming depth_timing = {};
+  double mirror_m = ProceduralRenderer::kNoMirror;
 };
 
 // Stage by stage what the odometry lets one see of a frame, so that a difference has a place: the prepared
@@ -81,7 +82,8 @@ bool run(const GoldenCase& golden, const GoldenMemory& memory, ProceduralRendere
   }
   for (int i = 0; i < golden.frames; ++i) {
     const bool dark = i >= golden.dark_from && i < golden.dark_from + golden.dark_frames;
-    const TrackResult result = memory.odometry.track(dark ? sequence.render_dark(i) : sequence.render(i));
+    const TrackResult result =
+        memory.odometry.track(dark ? sequence.render_dark(i) : sequence.render(i, golden.mirror_m));
     TextLine line;
     line.text(golden.name).space().integer(i).space().text(to_string(result.state));
     for (int axis = 0; axis < 3; ++axis)
@@ -139,6 +141,8 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view)) {
        .limits = surfaces,
        .readout_s = kKinectReadout_s,
        .depth_timing = {true, -0.01, 0.03}},
+      // Depth contradicts parallax from the third frame on, and the motion follows depth.
+      {.name = "mirror", .config = {}, .limits = surfaces, .frames = 8, .dark_from = 8, .mirror_m = 1.3},
       {.name = "window", .config = window, .limits = three, .frames = 12},
       {.name = "vga", .config = {}, .limits = Limits::vga(), .frames = 10, .dark_from = 8},
   };

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "motion_information.hpp"
 #include "simulated_pair.hpp"
 
 namespace plvo {
@@ -285,13 +286,6 @@ TEST(Gauge, DoesNotChangeTheCovariance) {
   EXPECT_LT((H_turned - H).norm(), 1e-4 * H.norm());  // the landmarks' tolerance
 }
 
-// The information of the inliers of a set, with the weights that the last estimate left.
-Matrix6 information_of(const ConstraintSet& set, const Se3& T) {
-  JointInformation sum;
-  (void)set.linearize(T, {}, RobustKernel(RobustLoss::kHuber, set.dof()), sum);
-  return sum.H.block<6, 6>(0, 0);
-}
-
 // Theorem 1: (26), and (25) for every ordered eigenvalue.
 TEST(Theorem1, FusionBeatsEitherKind) {
   Gaussian gaussian(36);
@@ -304,8 +298,8 @@ TEST(Theorem1, FusionBeatsEitherKind) {
     const MotionEstimate estimate =
         bench.estimate(pair, {}, 1, start, {.max_iterations = 40, .step_tolerance = 1e-10});
     ASSERT_EQ(estimate.status, StatusCode::kOk);
-    const Matrix6 I_P = information_of(*bench.sets[0], estimate.T_current_reference);
-    const Matrix6 I_L = information_of(*bench.sets[1], estimate.T_current_reference);
+    const Matrix6 I_P = test::information_of(*bench.sets[0], estimate.T_current_reference);
+    const Matrix6 I_L = test::information_of(*bench.sets[1], estimate.T_current_reference);
     EXPECT_LT((estimate.C_H * (I_P + I_L) - Matrix6::Identity()).norm(), 1e-6);
     const DenseVector H = test::symmetric_eigenvalues(estimate.C_H);
     const DenseVector P = test::symmetric_eigenvalues(test::inverse(I_P));

@@ -165,7 +165,7 @@ Se3 ProceduralRenderer::T_world_camera(int i) {
           Vector3(0.011 * i, 0.004 * phase, 0.007 * i)};
 }
 
-RgbdFrame ProceduralRenderer::render(int i) {
+RgbdFrame ProceduralRenderer::render(int i, double mirror_m) {
   const Se3 T = T_world_camera(i);
   View view(T.t);
   // Four samples a pixel, so that edges have a place below the pixel.
@@ -189,7 +189,8 @@ RgbdFrame ProceduralRenderer::render(int i) {
           static_cast<std::uint8_t>(std::max(0, grey - 3 * channel));
 
     // The ray has z = 1, so its parameter is the depth. Far things and one pixel in 64 have none.
-    const auto millimetres = static_cast<int>(hit.distance * 1000 + 0.5);
+    const double to_mirror_m = ray.along[2] > 0 ? (mirror_m - T.t.z()) / ray.along[2] : kNoMirror;
+    const auto millimetres = static_cast<int>(std::min(hit.distance, to_mirror_m) * 1000 + 0.5);
     const int step = 1 + millimetres * millimetres / 1'200'000;
     const int jitter = static_cast<int>((noise >> 8) % 3) - 1;
     const bool hole = millimetres > 4000 || (noise >> 16) % 64 == 0;

@@ -35,6 +35,10 @@ inline constexpr int kLandmarkKinds = 3;
 // A column for each kind but kNone.
 using OfEachKind = Matrix<6, kLandmarkKinds>;
 
+// Where some measurements are to decide, they weigh this many times as much as the others, which then decide
+// only the directions that the first leave open.
+inline constexpr double kFavoured = 1024;
+
 class CostTerm {
  public:
   virtual LandmarkKind kind() const = 0;

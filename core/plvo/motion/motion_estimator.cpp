@@ -38,7 +38,6 @@ constexpr double kScalesAlone[] = {400, 20, 1};
 // plus that of these SDs. In a direction that the kind does not measure, the motion then stays where it is.
 // The SDs are for a wrong motion that many features agree on: surfaces would be held there, because its
 // covariance is small.
-constexpr double kFavoured = 1024;
 constexpr double kHeld_m = 0.01;
 constexpr double kHeld_rad = 0.005;
 

@@ -35,9 +35,6 @@ constexpr double kUnboundedSigma = 1e6;
 
 // Depths contradict the motion if their χ²(3) exceeds this: a test at 0.99.
 constexpr double kMostPlausibleOfDepths = 11.3;
-// Where what is seen does not lie at its depth, points and lines have this weight. They then decide the
-// directions alone that surfaces and other sensors leave open.
-constexpr double kWeightInDoubt = 1. / 1024;
 
 // Order of the constraint sets of an estimate: points and lines of each reference.
 constexpr std::size_t points_set(std::size_t reference) { return 2 * reference; }
@@ -192,8 +189,9 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
       MotionStart again = start;
       again.prediction = &T_by_parallax;
       again.estimated = true;
-      // Where the rest does not determine the motion, parallax decides again.
-      for (const double factor : {kWeightInDoubt, 1 / kWeightInDoubt}) {
+      // What is seen does not lie at its depth, so surfaces and other sensors decide. If they and what they
+      // leave to parallax do not determine the motion, parallax decides again.
+      for (const double factor : {1 / kFavoured, kFavoured}) {
         for (ConstraintSet* set : matched) set->scale_weight(factor);
         solve(again);
         if (tracked.ok()) break;
