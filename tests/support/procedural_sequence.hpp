@@ -35,10 +35,11 @@ class ProceduralRenderer {
   static Se3 T_world_camera(int i);
   static std::int64_t stamp_ns(int i) { return 1'000'000'000 + i * 33'333'333LL; }
 
+  static constexpr double kNoMirror = 1e9;
+
   // Frame i, or a frame in which there is nothing to see (black, no depth). Valid until the next call; takes
   // no memory. mirror_m: an invisible pane stands across the room, at this z in m. Depth is that of the pane,
   // colour what lies behind it, as in a mirror.
-  static constexpr double kNoMirror = 1e9;
   RgbdFrame render(int i, double mirror_m = kNoMirror);
   RgbdFrame render_dark(int i);
 

@@ -189,8 +189,8 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
       MotionStart again = start;
       again.prediction = &T_by_parallax;
       again.estimated = true;
-      // What is seen does not lie at its depth, so surfaces and other sensors decide. If they and what they
-      // leave to parallax do not determine the motion, parallax decides again.
+      // What is seen does not lie at its depth, so surfaces and other sensors decide. If that does not
+      // determine the motion, parallax decides again.
       for (const double factor : {1 / kFavoured, kFavoured}) {
         for (ConstraintSet* set : matched) set->scale_weight(factor);
         solve(again);
