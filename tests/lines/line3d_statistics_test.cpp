@@ -15,6 +15,8 @@ namespace {
 using test::kSeed;
 using test::LineScene;
 
+constexpr double kWithTails = 16;  // limit of r² that does not cut off the tails of the noise
+
 // The four observable numbers of a line: the offsets of A and B from the true line in two directions across
 // it.
 struct Offsets {
@@ -47,7 +49,6 @@ TEST(Line3dStatistics, NeesOfTheLineIsWithinThe95PercentBand) {
   Line3dConfig config = Line3dConfig::paper();  // the noise is independent from sample to sample
   config.trust_segment = true;
   config.sigma_p_px = 0.8;
-  config.inlier_chi_square = 16;  // does not truncate the tails of the noise
   for (int trial = 0; trial < trials; ++trial) {
     LineScene scene = LineScene::random(random, pinhole);
     double first_t = 0, last_t = 0;
@@ -65,7 +66,8 @@ TEST(Line3dStatistics, NeesOfTheLineIsWithinThe95PercentBand) {
     seen.a = middle - half * d + (shift - half * turn) * n;
     seen.b = middle + half * d + (shift + half * turn) * n;
     Line3d line;
-    ASSERT_EQ(fit_line3d(seen, samples, pinhole, config, kSeed, line).outcome, Line3dOutcome::kOk);
+    ASSERT_EQ(fit_line3d(seen, samples, pinhole, config, kSeed, line, kWithTails).outcome,
+              Line3dOutcome::kOk);
     const Offsets o = across(line, scene);
     nees += o.error.dot(Vector4(test::solve_positive(o.covariance, o.error))) / trials;
     Vector6 e;
@@ -103,12 +105,12 @@ TEST(Line3dStatistics, CorrelatedDepthErrorsAreAccountedFor) {
       s.depth_m += error * s.sigma_d_m;
     }
     Line3dConfig config = Line3dConfig::paper();
-    config.inlier_chi_square = 16;
     for (double* nees : {&as_paper, &as_stated, &as_seen}) {
       config.depth_correlation_px = nees == &as_stated ? run : 1;
       config.trust_residuals = nees == &as_seen;
       Line3d line;
-      ASSERT_EQ(fit_line3d(scene.segment, samples, pinhole, config, kSeed, line).outcome, Line3dOutcome::kOk);
+      ASSERT_EQ(fit_line3d(scene.segment, samples, pinhole, config, kSeed, line, kWithTails).outcome,
+                Line3dOutcome::kOk);
       const Vector3 d = (scene.b - scene.a).normalized();
       const Vector3 across_plane = scene.a.cross(scene.b).normalized();
       const Vector3 in_plane = d.cross(across_plane);

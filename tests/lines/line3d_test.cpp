@@ -77,11 +77,11 @@ TEST(Line3d, AgreesWithTheDenseSolution) {
   const Pinhole pinhole{520, 540, 320, 240};
   for (int trial = 0; trial < 20; ++trial) {
     LineScene scene = LineScene::random(random, pinhole);
-    Line3dConfig config = Line3dConfig::paper();
-    config.inlier_chi_square = 1e9;  // both solutions use every sample
+    const Line3dConfig config = Line3dConfig::paper();
+    const double any = 1e9;  // both solutions use every sample
     const LineSamples samples = scene.noisy_samples(random, config.sigma_p_px, DepthNoise{});
     Line3d line;
-    const Line3dReport report = fit_line3d(scene.segment, samples, pinhole, config, kSeed, line);
+    const Line3dReport report = fit_line3d(scene.segment, samples, pinhole, config, kSeed, line, any);
     ASSERT_EQ(report.outcome, Line3dOutcome::kOk);
     std::vector<Point3d> points;
     for (const LineSample& s : samples.with_depth()) {

@@ -59,7 +59,6 @@ std::vector<Entry> all_entries() {
           PLVO_ENTRY(lines.sample_spacing_px, "1", "1000"),
           PLVO_ENTRY(lines.min_agreement, "0", "1"),
           PLVO_ENTRY(lines.sigma_p_px, "0.01", "20"),
-          PLVO_ENTRY(lines.inlier_chi_square, "0.1", "100"),
           PLVO_ENTRY(lines.side_reach_px, "0", "5"),
           PLVO_ENTRY(lines.depth_correlation_px, "0.01", "1000"),
           PLVO_ENTRY(lines.transverse_floor_px, "0", "20"),

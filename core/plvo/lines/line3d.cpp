@@ -90,13 +90,13 @@ bool confident(int tries, double w) {
 
 // Finds the line with the least MSAC cost among the regression line and at most kMaxRansacIterations lines
 // through two samples. The two samples are at least a quarter of the set apart.
-bool ransac(const Samples& samples, const Line3dConfig& config, std::uint64_t seed, PlaneLine& best) {
+bool ransac(const Samples& samples, double sigma_p_px, double threshold, std::uint64_t seed,
+            PlaneLine& best) {
   const auto n = static_cast<std::uint32_t>(samples.count);
-  const double threshold = config.inlier_chi_square;
   double best_cost = threshold * static_cast<double>(n) + 1;
   int best_inliers = 0;
   PlaneLine line;
-  if (regress(samples, config.sigma_p_px, line)) {
+  if (regress(samples, sigma_p_px, line)) {
     best_cost = score(samples, line, threshold, best_cost, best_inliers);
     best = line;
     if (best_inliers * 20 >= samples.count * 19) return true;
@@ -300,18 +300,18 @@ void leave_plane(const Segment& segment, const Pinhole& pinhole, const PlaneLine
 // Alternates between the consensus set and the line that fits it best. Two rounds suffice.
 constexpr int kConsensusRounds = 2;
 
-Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& config, std::uint64_t seed,
-                           PlaneLine& line, Line3dReport& report) {
-  if (!ransac(samples, config, seed, line)) return Line3dOutcome::kNoConsensus;
+Line3dOutcome fit_in_plane(Samples& samples, int needed, double sigma_p_px, double threshold,
+                           std::uint64_t seed, PlaneLine& line, Line3dReport& report) {
+  if (!ransac(samples, sigma_p_px, threshold, seed, line)) return Line3dOutcome::kNoConsensus;
   if (!re_anchor(line, samples.span().front().t, samples.span().back().t)) return Line3dOutcome::kNoConsensus;
-  int consensus = find_consensus(samples, line, config.inlier_chi_square);
+  int consensus = find_consensus(samples, line, threshold);
   for (int round = 0; round < kConsensusRounds; ++round) {
     if (consensus < 2) return Line3dOutcome::kNoConsensus;
     if (!refine(samples, line, report.cost)) return Line3dOutcome::kNotConverged;
     report.consensus = consensus;
     if (round == kConsensusRounds - 1) break;
     const auto before = samples.consensus;
-    consensus = find_consensus(samples, line, config.inlier_chi_square);
+    consensus = find_consensus(samples, line, threshold);
     if (samples.consensus == before) break;
   }
   return report.consensus >= needed ? Line3dOutcome::kOk : Line3dOutcome::kNoConsensus;
@@ -322,7 +322,7 @@ Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& con
 // Not inlined, so that the data of the fit are not on the stack while the caller samples depths.
 [[gnu::noinline]] Line3dReport fit_line3d(const Segment& segment, const LineSamples& taken,
                                           const Pinhole& pinhole, const Line3dConfig& config,
-                                          std::uint64_t seed, Line3d& out) {
+                                          std::uint64_t seed, Line3d& out, double inlier_chi_square) {
   Line3dReport report;
   int needed = 2;  // the smallest integer that reaches τ n_s
   while (needed < kMinConsensus * taken.asked) ++needed;
@@ -332,7 +332,7 @@ Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& con
   Samples samples;
   whiten_all(taken, config.sigma_p_px, samples);
   PlaneLine line;
-  report.outcome = fit_in_plane(samples, needed, config, seed, line, report);
+  report.outcome = fit_in_plane(samples, needed, config.sigma_p_px, inlier_chi_square, seed, line, report);
   if (report.outcome != Line3dOutcome::kOk) return report;
 
   // A and B are the feet of the first and the last sample of the consensus set.

@@ -28,8 +28,7 @@ struct Line3dConfig {
   double sample_spacing_px = 3;
   double min_agreement = 0.8;  // smallest n_con / samples with depth; below it, a second surface is involved
   double sigma_p_px = 0.5;     // σ_p of (3), for one sample
-  double inlier_chi_square = 6.63;  // limit of r², one degree of freedom: 99 %
-  int side_reach_px = 3;            // see sample_segment
+  int side_reach_px = 3;       // see sample_segment
   // Length along the segment within which depth errors are fully correlated, because of quantisation and the
   // sensor's correlation window. The in-plane information is divided by (this / sample spacing) if that
   // exceeds 1. The value 1 is the paper's assumption of independent samples.
@@ -71,10 +70,15 @@ struct Line3dReport {
   double cost = 0;    // Σ r² over the consensus set
 };
 
+// Limit of the squared residual r² of an inlier, one degree of freedom: 99 %.
+constexpr double kSampleInlierChiSquare = 6.63;
+
 // Fits a 3D line to the samples, in the camera frame, metres; a and b are ordered as in the segment. `line`
-// is written only on kOk. seed: seed of RANSAC's random generator.
+// is written only on kOk. seed: seed of RANSAC's random generator. Another limit than the default serves
+// tests of the covariance, where the tails of the noise must not be cut off.
 Line3dReport fit_line3d(const Segment& segment, const LineSamples& samples, const Pinhole& pinhole,
-                        const Line3dConfig& config, std::uint64_t seed, Line3d& line);
+                        const Line3dConfig& config, std::uint64_t seed, Line3d& line,
+                        double inlier_chi_square = kSampleInlierChiSquare);
 
 // Samples the depths and fits the line. depth as in sample_segment.
 template <typename Depth>

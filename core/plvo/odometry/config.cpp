@@ -131,7 +131,6 @@ constexpr char kLinesEntries[] =
     "sample_spacing_px\0"
     "min_agreement\0"
     "sigma_p_px\0"
-    "inlier_chi_square\0"
     "side_reach_px\0"
     "depth_correlation_px\0"
     "transverse_floor_px\0";
@@ -139,7 +138,6 @@ constexpr Range kLinesRanges[] = {
     {offsetof(Line3dConfig, sample_spacing_px), Range::Type::kDouble, 1, 1000},
     {offsetof(Line3dConfig, min_agreement), Range::Type::kDouble, 0, 1},
     {offsetof(Line3dConfig, sigma_p_px), Range::Type::kDouble, 0.01F, 20},
-    {offsetof(Line3dConfig, inlier_chi_square), Range::Type::kDouble, 0.1F, 100},
     {offsetof(Line3dConfig, side_reach_px), Range::Type::kInt, 0, kMaxSideReach},
     {offsetof(Line3dConfig, depth_correlation_px), Range::Type::kDouble, 0.01F, 1000},
     {offsetof(Line3dConfig, transverse_floor_px), Range::Type::kDouble, 0, 20},
