@@ -115,7 +115,7 @@ struct Newcomers {
     };
     add(kRoom, 3);
     if (proven)
-      for (Point3d& point : room.points_reference) point.record.add(true);
+      for (Point3d& point : room.points_reference) point.record = LandmarkRecord(LandmarkRecord::kProven);
     const Se3 T_room = room.truth;
     room.truth = object = boxplus(T_room, Vector6(apart, 0, 0, 0, 0, 0));
     add(3 * kRoom, 2);

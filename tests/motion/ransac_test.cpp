@@ -15,11 +15,12 @@ struct Lead {
   std::size_t matches;  // that lead
 };
 
-// The first `proven` of 100 points have agreed before.
+// The first `proven` of 100 points have agreed before. The other ones lack one agreement.
 Lead lead_of_proven(std::size_t proven) {
   test::Gaussian gaussian(34);
   test::SimulatedPair pair = test::simulate(gaussian, 100, 0);
-  for (std::size_t i = 0; i < proven; ++i) pair.points_reference[i].record.add(true);
+  for (std::size_t i = 0; i < pair.points_reference.size(); ++i)
+    pair.points_reference[i].record = LandmarkRecord(LandmarkRecord::kProven - (i < proven ? 0 : 1));
   test::Bench bench;
   bench.load(pair);
   const CostTerms terms(bench.sets);

@@ -31,6 +31,18 @@ TEST(LandmarkRecord, IsTrustedAgainAfterAsManyAgreements) {
   EXPECT_TRUE(record.trusted());
 }
 
+TEST(LandmarkRecord, IsProvenAfterThreeMoreAgreementsThanDisagreements) {
+  LandmarkRecord record;
+  for (const bool agreed : {true, true, false, true}) {
+    record.add(agreed);
+    EXPECT_FALSE(record.proven());
+  }
+  record.add(true);
+  EXPECT_TRUE(record.proven());
+  record.add(false);
+  EXPECT_FALSE(record.proven());
+}
+
 TEST(LandmarkRecord, AnUntrustedLandmarkHasNoEvidenceAndTakesNoneFromItsCell) {
   Point3d good, bad;
   good.p = bad.p = {0, 0, 2};

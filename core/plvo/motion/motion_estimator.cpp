@@ -180,10 +180,11 @@ class ConsensusSolver {
   }
 
   // An object that comes into view brings new landmarks, and it may bring more of them than the room has. So
-  // the first motion is estimated from proven landmarks alone, if there are enough, and then from all. If the
-  // second contradicts the first, the first is taken.
+  // the first motion is estimated from proven landmarks alone, if there are enough and most of them agree,
+  // and then from all. If the second contradicts the first, the first is taken.
   StatusCode find_first() {
-    if (ransac_.let_proven_lead() && find_leading() == StatusCode::kOk && has_consensus()) {
+    if (ransac_.let_proven_lead() && find_leading() == StatusCode::kOk && has_consensus() &&
+        ransac_.most_leading_agree()) {
       const Se3 proven = T_;
       const Matrix6 information = solving_.solver.hessian();
       ransac_.let_all_lead();

@@ -107,6 +107,13 @@ void Ransac::gather_leading() {
   }
 }
 
+bool Ransac::most_leading_agree() const {
+  std::size_t agreeing = 0;
+  for (const RansacCandidate& candidate : leading_)
+    agreeing += sets_[candidate.set]->inliers()[candidate.index];
+  return 2 * agreeing > leading();
+}
+
 double Ransac::covered() const {
   double inliers = 0;
   for (const RansacCandidate& candidate : candidates_)

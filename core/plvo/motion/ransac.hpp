@@ -86,6 +86,8 @@ class Ransac {
   // Clears the flags of the inliers that are isolated among outliers (neighbourhoods.hpp), unless most are.
   void leave_isolated_out();
   int inliers() const { return inliers_; }
+  // Whether most of the leading matches are flagged.
+  bool most_leading_agree() const;
   // Share of the evidence of all usable matches that the flagged inliers have.
   double covered() const;
   // The evidence of all matches together, in m.

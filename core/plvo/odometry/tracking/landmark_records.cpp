@@ -11,8 +11,8 @@ namespace {
 // detector places a corner on a whole pixel of its pyramid level, so it is not found again at the same place.
 constexpr double kSameLandmark_px = 3;
 // Any other new landmark inherits at most this balance from its part of the image, and at least −1: one frame
-// decides whether it is trusted.
-constexpr int kMostInherited = 3;
+// decides whether it is proven, or trusted.
+constexpr int kMostInherited = LandmarkRecord::kProven - 1;
 constexpr int kLeastInherited = -1;
 
 // Sum and number of the records in each cell of the image.
