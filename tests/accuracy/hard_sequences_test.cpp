@@ -172,9 +172,9 @@ TEST(HardSequences, ARobotThatMovesInACorridorDoesNotFollowABoard) {
   expect_the_room_behind_a_board(SceneName::kCorridor, {8, 9}, 0.05);
 }
 
-// A person walks ahead of the camera. From one frame to the next their landmarks agree with a motion between
+// A person goes ahead of the camera. From one frame to the next their landmarks agree with a motion between
 // both. With one agreement as proof (LandmarkRecord::kProven) the mean error is 70 mm.
-TEST(HardSequences, APersonWhoWalksAheadInACorridorIsNotFollowed) {
+TEST(HardSequences, APersonAheadInACorridorIsNotFollowed) {
   double mean_m = 0;
   for (const std::uint64_t seed : {20, 22, 24, 26}) {
     SimulatorOptions options = hard_options(60, {"person-ahead"});

@@ -17,7 +17,7 @@ namespace {
 
 // A bounded entry of a group of settings. Both bounds are allowed; NaN is not. The names of a group's entries
 // stand apart, each with a zero behind it: a table with pointers would be no constant in a shared library.
-struct Range {
+struct SettingRange {
   enum class Type : std::uint8_t { kDouble, kInt, kNanoseconds };  // bounds of the last in seconds
 
   std::uint16_t offset;  // in the group, bytes
@@ -26,7 +26,7 @@ struct Range {
 };
 
 template <typename T>
-double value_at(const std::byte* group, const Range& range) {
+double value_at(const std::byte* group, const SettingRange& range) {
   T value;
   std::memcpy(&value, group + range.offset, sizeof value);
   return static_cast<double>(value);
@@ -36,7 +36,8 @@ double value_at(const std::byte* group, const Range& range) {
 class RangeCheck {
  public:
   template <typename Group>
-  void check(const char* name, const Group& group, const char* entries, std::span<const Range> ranges) {
+  void check(const char* name, const Group& group, const char* entries,
+             std::span<const SettingRange> ranges) {
     static_assert(std::is_standard_layout_v<Group>);
     check_bytes(name, reinterpret_cast<const std::byte*>(&group), entries, ranges);
   }
@@ -44,12 +45,12 @@ class RangeCheck {
 
  private:
   [[gnu::noinline]] void check_bytes(const char* name, const std::byte* group, const char* entry,
-                                     std::span<const Range> ranges) {
-    for (const Range& range : ranges) {
-      const double value = range.type == Range::Type::kDouble ? value_at<double>(group, range)
-                           : range.type == Range::Type::kInt  ? value_at<int>(group, range)
-                                                              : value_at<std::int64_t>(group, range);
-      const double unit = range.type == Range::Type::kNanoseconds ? 1e9 : 1;
+                                     std::span<const SettingRange> ranges) {
+    for (const SettingRange& range : ranges) {
+      const double value = range.type == SettingRange::Type::kDouble ? value_at<double>(group, range)
+                           : range.type == SettingRange::Type::kInt  ? value_at<int>(group, range)
+                                                                     : value_at<std::int64_t>(group, range);
+      const double unit = range.type == SettingRange::Type::kNanoseconds ? 1e9 : 1;
       const double low = unit * decimal(range.low), high = unit * decimal(range.high);
       const char* const its_name = entry;
       while (*entry++ != 0) {
@@ -96,19 +97,19 @@ constexpr char kDepthNoiseEntries[] =
     "c3\0"
     "floor_m\0"
     "registration_px\0";
-constexpr Range kDepthNoiseRanges[] = {
-    {offsetof(DepthNoise, c1), Range::Type::kDouble, -1, 1},
-    {offsetof(DepthNoise, c2), Range::Type::kDouble, -1, 1},
-    {offsetof(DepthNoise, c3), Range::Type::kDouble, -1, 1},
-    {offsetof(DepthNoise, floor_m), Range::Type::kDouble, 1e-6F, 1},
-    {offsetof(DepthNoise, registration_px), Range::Type::kDouble, 0, 20},
+constexpr SettingRange kDepthNoiseRanges[] = {
+    {offsetof(DepthNoise, c1), SettingRange::Type::kDouble, -1, 1},
+    {offsetof(DepthNoise, c2), SettingRange::Type::kDouble, -1, 1},
+    {offsetof(DepthNoise, c3), SettingRange::Type::kDouble, -1, 1},
+    {offsetof(DepthNoise, floor_m), SettingRange::Type::kDouble, 1e-6F, 1},
+    {offsetof(DepthNoise, registration_px), SettingRange::Type::kDouble, 0, 20},
 };
 constexpr char kPointsEntries[] =
     "sigma_px\0"
     "depth_reach_px\0";
-constexpr Range kPointsRanges[] = {
-    {offsetof(PointConfig, sigma_px), Range::Type::kDouble, 0.01F, 20},
-    {offsetof(PointConfig, depth_reach_px), Range::Type::kInt, 0, DepthSampler::kMaxRadius},
+constexpr SettingRange kPointsRanges[] = {
+    {offsetof(PointConfig, sigma_px), SettingRange::Type::kDouble, 0.01F, 20},
+    {offsetof(PointConfig, depth_reach_px), SettingRange::Type::kInt, 0, DepthSampler::kMaxRadius},
 };
 constexpr char kNoiseEntries[] =
     "learning_rate\0"
@@ -118,14 +119,14 @@ constexpr char kNoiseEntries[] =
     "line_correlation\0"
     "surface_correlation\0"
     "common_mode_share\0";
-constexpr Range kNoiseRanges[] = {
-    {offsetof(NoiseConfig, learning_rate), Range::Type::kDouble, 0, 0.5F},
-    {offsetof(NoiseConfig, angular_rate_error_rad_per_s), Range::Type::kDouble, 0, 10},
-    {offsetof(NoiseConfig, shared_depth_m), Range::Type::kDouble, 0, 1},
-    {offsetof(NoiseConfig, point_correlation), Range::Type::kDouble, 0, 1},
-    {offsetof(NoiseConfig, line_correlation), Range::Type::kDouble, 0, 1},
-    {offsetof(NoiseConfig, surface_correlation), Range::Type::kDouble, 0, 1},
-    {offsetof(NoiseConfig, common_mode_share), Range::Type::kDouble, 0, 1},
+constexpr SettingRange kNoiseRanges[] = {
+    {offsetof(NoiseConfig, learning_rate), SettingRange::Type::kDouble, 0, 0.5F},
+    {offsetof(NoiseConfig, angular_rate_error_rad_per_s), SettingRange::Type::kDouble, 0, 10},
+    {offsetof(NoiseConfig, shared_depth_m), SettingRange::Type::kDouble, 0, 1},
+    {offsetof(NoiseConfig, point_correlation), SettingRange::Type::kDouble, 0, 1},
+    {offsetof(NoiseConfig, line_correlation), SettingRange::Type::kDouble, 0, 1},
+    {offsetof(NoiseConfig, surface_correlation), SettingRange::Type::kDouble, 0, 1},
+    {offsetof(NoiseConfig, common_mode_share), SettingRange::Type::kDouble, 0, 1},
 };
 constexpr char kLinesEntries[] =
     "sample_spacing_px\0"
@@ -134,44 +135,44 @@ constexpr char kLinesEntries[] =
     "side_reach_px\0"
     "depth_correlation_px\0"
     "transverse_floor_px\0";
-constexpr Range kLinesRanges[] = {
-    {offsetof(Line3dConfig, sample_spacing_px), Range::Type::kDouble, 1, 1000},
-    {offsetof(Line3dConfig, min_agreement), Range::Type::kDouble, 0, 1},
-    {offsetof(Line3dConfig, sigma_p_px), Range::Type::kDouble, 0.01F, 20},
-    {offsetof(Line3dConfig, side_reach_px), Range::Type::kInt, 0, kMaxSideReach},
-    {offsetof(Line3dConfig, depth_correlation_px), Range::Type::kDouble, 0.01F, 1000},
-    {offsetof(Line3dConfig, transverse_floor_px), Range::Type::kDouble, 0, 20},
+constexpr SettingRange kLinesRanges[] = {
+    {offsetof(Line3dConfig, sample_spacing_px), SettingRange::Type::kDouble, 1, 1000},
+    {offsetof(Line3dConfig, min_agreement), SettingRange::Type::kDouble, 0, 1},
+    {offsetof(Line3dConfig, sigma_p_px), SettingRange::Type::kDouble, 0.01F, 20},
+    {offsetof(Line3dConfig, side_reach_px), SettingRange::Type::kInt, 0, kMaxSideReach},
+    {offsetof(Line3dConfig, depth_correlation_px), SettingRange::Type::kDouble, 0.01F, 1000},
+    {offsetof(Line3dConfig, transverse_floor_px), SettingRange::Type::kDouble, 0, 20},
 };
 constexpr char kMotionEntries[] =
     "max_ransac_iterations\0"
     "min_inliers\0"
     "max_sigma_m\0"
     "max_sigma_rad\0";
-constexpr Range kMotionRanges[] = {
-    {offsetof(MotionConfig, max_ransac_iterations), Range::Type::kInt, 1, 100000},
-    {offsetof(MotionConfig, min_inliers), Range::Type::kInt, 3, 10000},
-    {offsetof(MotionConfig, max_sigma_m), Range::Type::kDouble, 1e-6F, 100},
-    {offsetof(MotionConfig, max_sigma_rad), Range::Type::kDouble, 1e-6F, 10},
+constexpr SettingRange kMotionRanges[] = {
+    {offsetof(MotionConfig, max_ransac_iterations), SettingRange::Type::kInt, 1, 100000},
+    {offsetof(MotionConfig, min_inliers), SettingRange::Type::kInt, 3, 10000},
+    {offsetof(MotionConfig, max_sigma_m), SettingRange::Type::kDouble, 1e-6F, 100},
+    {offsetof(MotionConfig, max_sigma_rad), SettingRange::Type::kDouble, 1e-6F, 10},
 };
 constexpr char kReferencesEntries[] =
     "keyframe_inlier_ratio\0"
     "max_lost_s\0"
     "process_noise_m_per_s\0"
     "process_noise_rad_per_s\0";
-constexpr Range kReferencesRanges[] = {
-    {offsetof(ReferenceConfig, keyframe_inlier_ratio), Range::Type::kDouble, 0, 1},
-    {offsetof(ReferenceConfig, max_lost_s), Range::Type::kDouble, 0, 1000000},
-    {offsetof(ReferenceConfig, process_noise_m_per_s), Range::Type::kDouble, 0, 100},
-    {offsetof(ReferenceConfig, process_noise_rad_per_s), Range::Type::kDouble, 0, 100},
+constexpr SettingRange kReferencesRanges[] = {
+    {offsetof(ReferenceConfig, keyframe_inlier_ratio), SettingRange::Type::kDouble, 0, 1},
+    {offsetof(ReferenceConfig, max_lost_s), SettingRange::Type::kDouble, 0, 1000000},
+    {offsetof(ReferenceConfig, process_noise_m_per_s), SettingRange::Type::kDouble, 0, 100},
+    {offsetof(ReferenceConfig, process_noise_rad_per_s), SettingRange::Type::kDouble, 0, 100},
 };
 constexpr char kBudgetEntries[] =
     "frame_ns\0"
     "patience_frames\0"
     "spare_share\0";
-constexpr Range kBudgetRanges[] = {
-    {offsetof(BudgetConfig, frame_ns), Range::Type::kNanoseconds, 0, 1000},
-    {offsetof(BudgetConfig, patience_frames), Range::Type::kInt, 1, 1000000},
-    {offsetof(BudgetConfig, spare_share), Range::Type::kDouble, 0, 1},
+constexpr SettingRange kBudgetRanges[] = {
+    {offsetof(BudgetConfig, frame_ns), SettingRange::Type::kNanoseconds, 0, 1000},
+    {offsetof(BudgetConfig, patience_frames), SettingRange::Type::kInt, 1, 1000000},
+    {offsetof(BudgetConfig, spare_share), SettingRange::Type::kDouble, 0, 1},
 };
 
 constexpr char kLimitsEntries[] =
@@ -183,15 +184,15 @@ constexpr char kLimitsEntries[] =
     "line_bands\0"
     "cores\0"
     "surfaces\0";
-constexpr Range kLimitsRanges[] = {
-    {offsetof(Limits, width), Range::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
-    {offsetof(Limits, height), Range::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
-    {offsetof(Limits, keypoints), Range::Type::kInt, 10, 60000},
-    {offsetof(Limits, segments), Range::Type::kInt, 1, 60000},
-    {offsetof(Limits, references), Range::Type::kInt, 1, kMaxReferences},
-    {offsetof(Limits, line_bands), Range::Type::kInt, 1, 8},
-    {offsetof(Limits, cores), Range::Type::kInt, 1, 2},
-    {offsetof(Limits, surfaces), Range::Type::kInt, 0, 1000},
+constexpr SettingRange kLimitsRanges[] = {
+    {offsetof(Limits, width), SettingRange::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
+    {offsetof(Limits, height), SettingRange::Type::kInt, Limits::kLeastSide, Limits::kMostSide},
+    {offsetof(Limits, keypoints), SettingRange::Type::kInt, 10, 60000},
+    {offsetof(Limits, segments), SettingRange::Type::kInt, 1, 60000},
+    {offsetof(Limits, references), SettingRange::Type::kInt, 1, kMaxReferences},
+    {offsetof(Limits, line_bands), SettingRange::Type::kInt, 1, 8},
+    {offsetof(Limits, cores), SettingRange::Type::kInt, 1, 2},
+    {offsetof(Limits, surfaces), SettingRange::Type::kInt, 0, 1000},
 };
 
 }  // namespace
@@ -200,7 +201,8 @@ Status Limits::validate() const {
   RangeCheck ranges;
   ranges.check("Limits::", *this, kLimitsEntries, kLimitsRanges);
   const int most_kept = std::min(kMostKeptKeyframes, kMostOtherFrames - references);
-  const Range kept{offsetof(Limits, kept_keyframes), Range::Type::kInt, 0, static_cast<float>(most_kept)};
+  const SettingRange kept{offsetof(Limits, kept_keyframes), SettingRange::Type::kInt, 0,
+                          static_cast<float>(most_kept)};
   ranges.check("Limits::", *this, "kept_keyframes", {&kept, 1});
   return ranges.status();
 }

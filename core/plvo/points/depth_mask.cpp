@@ -35,11 +35,11 @@ using WideRow = std::uint32_t;
 static_assert(kHoleColumns == 16);
 
 // The depths that belong to the keypoint's surface, in units of the image. 0 means no depth.
-struct Range {
+struct DepthRange {
   std::int32_t first, last;
 };
 
-Range range_around(double units) {
+DepthRange range_around(double units) {
   const auto whole = [](double x) { return x < 65535 ? static_cast<std::int32_t>(x) : 65535; };
   return {whole((1 - kSameSurface) * units) + 1, whole((1 + kSameSurface) * units)};
 }
@@ -55,7 +55,7 @@ void load_eight(const std::uint16_t* readings, int step, Int16x8& units) {
 }
 
 // Returns one bit for each of eight readings, which is set if the reading is in the range.
-std::uint32_t own_of_eight(const Int16x8& units, const Range& range) {
+std::uint32_t own_of_eight(const Int16x8& units, const DepthRange& range) {
   // Subtracts 2^15 from both sides, so that signed comparison orders unsigned values.
   const auto first = static_cast<std::int16_t>(range.first - 32768);
   const auto last = static_cast<std::int16_t>(range.last - 32768);
@@ -140,7 +140,7 @@ void shrink(std::span<Bits> rows, int reach) {
 }
 
 // Returns the pixels of the keypoint's surface and those without depth that it surrounds.
-SurfaceBits fill_holes(const LevelReadings& readings, const Range& range) {
+SurfaceBits fill_holes(const LevelReadings& readings, const DepthRange& range) {
   std::array<WideRow, kHoleRows> own{}, other{};
   for (int r = 0; r < kHoleRows; ++r) {
     const std::uint16_t* const row = readings.row(r - kHoleReach, kHoleReach);
@@ -185,7 +185,7 @@ WindowMask depth_mask(const DepthSampler& depth, const Vector2& centre, double d
   const DepthSampler::Place place(depth, centre);
   if (!place.inside) return mask;
   const LevelReadings readings(depth, place, level);
-  const Range range = range_around(depth_m / depth.metres_per_unit());
+  const DepthRange range = range_around(depth_m / depth.metres_per_unit());
   SurfaceBits own{};
   bool holes = false;
 #ifndef PLVO_SIMD_LOOPS
