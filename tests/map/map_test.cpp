@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -104,6 +105,40 @@ TEST(Map, FindsTheCameraWhereEachFrameIsAKeyframe) {
   EXPECT_EQ(camera.map.counts().keyframes, keyframes + frames);
   EXPECT_LE(frames, 10);
   EXPECT_EQ(camera.wrong_loops(), 0);
+}
+
+// With 320×240 pixels two pairs are compared in a frame while the place is unknown, otherwise one.
+TEST(Map, ComparesMoreInAFrameOfALargerImageWhileThePlaceIsUnknown) {
+  ProceduralSequence sequence(320, 240);
+  const Limits limits(320, 240, 250, 64, 2, 1, 0);
+  std::vector<std::byte> memory(required_bytes(limits));
+  Odometry odometry;
+  ASSERT_TRUE(odometry.init(memory, sequence.camera(), Config(), limits).ok());
+  MapLimits map_limits;
+  map_limits.keyframes = 32;
+  std::vector<std::byte> map_memory(Map::required_bytes(map_limits, 320, 240));
+  Map map;
+  ASSERT_TRUE(map.init(map_memory, sequence.camera(), Config(), map_limits).ok());
+  int taken = 0, most_if_known = 0, most_if_unknown = 0;
+  bool located = true;
+  const auto see = [&](int view) {
+    RgbdFrame frame = sequence.render(view);
+    frame.stamp_ns = frame.depth_stamp_ns = ProceduralSequence::stamp_ns(taken++);
+    const int before = map.counts().compared;
+    const bool was_located = located;
+    located = map.update(odometry, odometry.track(frame)).located;
+    int& most = was_located ? most_if_known : most_if_unknown;
+    most = std::max(most, map.counts().compared - before);
+  };
+  for (int round = 0; round < 2; ++round) {
+    for (int view = 0; view < kFar; ++view) see(view);
+    for (int view = kFar; view > 0; --view) see(view);
+  }
+  odometry.reset();
+  for (int view = 30; view < 40; ++view) see(view);
+  EXPECT_TRUE(located);
+  EXPECT_EQ(most_if_known, 1);
+  EXPECT_EQ(most_if_unknown, 2);
 }
 
 // A full map removes a keyframe for each that joins. The one whose place is searched stays, and a place that
@@ -220,7 +255,7 @@ TEST(Map, StaysWithinItsCapacityRoundAfterRound) {
 // Every compiler, optimisation level and processor must give these bits. If a change of the odometry or of
 // the map alters them on purpose, the new number stands in the message.
 TEST(Map, GivesTheSameBitsEverywhere) {
-  constexpr std::uint64_t kGolden = 9344157042036096848U;
+  constexpr std::uint64_t kGolden = 3204652946650363987U;
   MappedCamera camera(12);
   Fingerprint bits;
   const auto look = [&](int view) {

@@ -187,6 +187,26 @@ void compare_with_dense_solver(const Pairs& loops) {
   }
 }
 
+// The blocks against the whole Jacobians.
+TEST(PoseGraph, AMotionHasTheCovarianceThatItsJacobianGives) {
+  using Dense = Eigen::Matrix<double, 6, 6>;
+  Random random(48);
+  for (int i = 0; i < 50; ++i) {
+    const Se3 T_i = boxplus(Se3(), draw(random, 2, 1)), T_ij = boxplus(Se3(), draw(random, 1, 1));
+    Dense root;
+    for (int k = 0; k < 6; ++k) root.col(k) = draw(random, 0.1, 0.1);
+    const Dense C = root * root.transpose();
+    Dense turn = Dense::Zero(), lever = Dense::Identity();
+    turn.block<3, 3>(0, 0) = turn.block<3, 3>(3, 3) = T_i.R;
+    lever.block<3, 3>(0, 3) = skew(T_i * T_ij.t);
+    const Dense J = lever * turn;
+    const Dense in_map = motion_in_map(T_i, T_ij, C);
+    EXPECT_LT((in_map - J * C * J.transpose()).norm(), 1e-12 * in_map.norm());
+    const Dense about = about_position(in_map, T_i * T_ij.t);
+    EXPECT_LT((about - turn * C * turn.transpose()).norm(), 1e-12 * in_map.norm());
+  }
+}
+
 TEST(PoseGraph, FindsTheSolutionOfADenseSolver) { compare_with_dense_solver({{0, 24}, {3, 20}, {1, 23}}); }
 
 // Their errors are not independent: those of a view are in all of its loops.

@@ -113,7 +113,8 @@ LoopMeasurement LoopCheck::operator()(const MapFeatures& old_view, const MapFeat
     points.set_reference(0, point_correlation);
     lines.set_reference(0, line_correlation);
     const std::array<ConstraintSet*, 2> sets{&points, &lines};
-    const MotionStart start(with_lines ? &T_new_old : nullptr, NuisanceParameters(), with_lines);
+    MotionStart start(with_lines ? &T_new_old : nullptr, NuisanceParameters(), with_lines);
+    start.find_shifts = false;
     const std::span<MotionEstimate> estimate = take_estimate(scratch);
     if (estimate.empty()) return loop;
     estimate_motion(sets, {}, MotionReferences(), with_lines ? motion : first_motion, kLoopSolve, seed, start,

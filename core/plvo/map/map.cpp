@@ -23,6 +23,8 @@ constexpr std::uint32_t kLeastScoreUnknown = PlaceIndex::kWholeVote;
 // A keyframe is compared with this many views that have the most votes, then judged. While the place is
 // unknown, more views follow, until the place is recognised or the latest ones show nothing.
 constexpr std::size_t kFirstCandidates = 4;
+// For each of this many pixels one more comparison is made in a frame while the place is unknown.
+constexpr int kPixelsOfAComparison = 320 * 240;
 // Views near a hypothesis differ from it by less than this; see view_distance_between().
 constexpr float kNearView = 2;
 // A view with fewer points than this is not worth a comparison.
@@ -53,6 +55,12 @@ constexpr int kRefreshedPerFrame = 2;
 // Whether δ is within a covariance whose variances are this many times as large.
 bool lies_within(const Vector6& delta, const Matrix6& covariance, double slack) {
   return mahalanobis_squared<6>(delta, covariance) <= slack * kMostPlausibleMotion;
+}
+
+// Comparisons in a frame while the place is unknown. Each takes the same time whatever the image, and a frame
+// of more pixels has more time.
+int comparisons_if_unknown(const CameraModel& camera) {
+  return 1 + camera.width * camera.height / kPixelsOfAComparison;
 }
 
 // How much two views differ, by the translation as a share of the scene's depth and by the angle. Below 1
@@ -253,10 +261,12 @@ void Map::add_keyframe(const KeyframeView& view, MapResult& out) {
 }
 
 void Map::search_on(MapResult& out) {
-  if (to_compare_ > 0)
-    compare_next();
-  else if (is_searching_)
+  if (to_compare_ > 0) {
+    const int most = place_is_known(searched_) ? 1 : comparisons_if_unknown(check_.camera);
+    for (int i = 0; i < most && to_compare_ > 0; ++i) compare_next();
+  } else if (is_searching_) {
     judge(out);
+  }
 }
 
 void Map::measure_depth(std::uint16_t slot) {

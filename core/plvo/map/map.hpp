@@ -10,11 +10,12 @@
 // The odometry's pose stays as it is; T_map_world takes the corrections (as odom and map in ROS REP 105).
 //
 // A keyframe of the odometry becomes one of the map (map_keyframe.hpp), unless its view is nearly that of the
-// one before. It is compared with those that look alike (place_index.hpp), one for each frame, by the
-// estimator (loop_check.hpp). A place is recognised when several comparisons agree on one motion, none
-// contradicts them, and the motion lies within the uncertainty of the map. The loops then join the pose graph
-// (pose_graph.hpp), which is solved in steps, one for each frame. When the map is full, a keyframe is removed
-// whose view another one shows as well; the only view of a place stays.
+// one before. It is compared with those that look alike (place_index.hpp) by the estimator (loop_check.hpp),
+// one for each frame and, while the place is unknown, one more for each 320×240 pixels of the image. A place
+// is recognised when several comparisons agree on one motion, none contradicts them, and the motion lies
+// within the uncertainty of the map. The loops then join the pose graph (pose_graph.hpp), which is solved in
+// steps, one for each frame. When the map is full, a keyframe is removed whose view another one shows as
+// well; the only view of a place stays.
 //
 // Like the odometry, a map takes all memory at init, allocates nothing, and gives the same bits everywhere.
 #pragma once

@@ -22,11 +22,27 @@ constexpr int kSharingRounds = 5;
 
 Se3 displacement(const Vector6& x) { return {rotation_exp(x.tail<3>()), x.head<3>()}; }
 
-// ρ = v + [t]× ω for a pose at t.
+// J C Jᵀ with J = (I lever; 0 I): ρ = v + [t]× ω for a pose at t, and the inverse of that.
 Matrix6 transform(const Matrix6& C, const Matrix3& lever) {
-  Matrix6 J = Matrix6::Identity();
-  J.block<3, 3>(0, 3) = lever;
-  return transform_covariance(J, C);
+  const Matrix3 D = C.block<3, 3>(3, 3);
+  const Matrix3 B = C.block<3, 3>(0, 3) + lever * D;
+  Matrix6 out;
+  out.block<3, 3>(0, 0) = C.block<3, 3>(0, 0) + lever * C.block<3, 3>(3, 0) + B * lever.transpose();
+  out.block<3, 3>(0, 3) = B;
+  out.block<3, 3>(3, 0) = B.transpose();
+  out.block<3, 3>(3, 3) = D;
+  return out;
+}
+
+Matrix6 rotated(const Matrix6& C, const Matrix3& R) {
+  const Matrix3 R_transposed = R.transpose();
+  const Matrix3 B = R * Matrix3(C.block<3, 3>(0, 3)) * R_transposed;
+  Matrix6 out;
+  out.block<3, 3>(0, 0) = R * Matrix3(C.block<3, 3>(0, 0)) * R_transposed;
+  out.block<3, 3>(0, 3) = B;
+  out.block<3, 3>(3, 0) = B.transpose();
+  out.block<3, 3>(3, 3) = R * Matrix3(C.block<3, 3>(3, 3)) * R_transposed;
+  return out;
 }
 
 // The measured motion from one node to another, given that in either direction.
@@ -47,7 +63,7 @@ Matrix6 about_position(const Matrix6& covariance, const Vector3& t) {
 }
 
 Matrix6 motion_in_map(const Se3& T_i, const Se3& T_ij, const Matrix6& covariance) {
-  return about_origin(transform_covariance(rotation_of_both(T_i.R), covariance), T_i * T_ij.t);
+  return about_origin(rotated(covariance, T_i.R), T_i * T_ij.t);
 }
 
 Vector6 difference(const Se3& T) {
@@ -81,8 +97,8 @@ std::uint16_t PoseGraph::append(const Se3& T_previous_keyframe, const Matrix6& c
     node.motion_covariance = covariance + kMotionFloor * Matrix6::Identity();
     node.T_map_keyframe = previous.T_map_keyframe * T_previous_keyframe;
     node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
-    node.covariance = previous.covariance +
-                      motion_in_map(previous.T_map_keyframe, T_previous_keyframe, node.motion_covariance);
+    set_covariance(node, previous.covariance + motion_in_map(previous.T_map_keyframe, T_previous_keyframe,
+                                                             node.motion_covariance));
   }
   if (size_ == 0) node.T_map_keyframe = T_previous_keyframe;
   order_[size_++] = static_cast<std::uint16_t>(slot);
@@ -92,6 +108,7 @@ std::uint16_t PoseGraph::append(const Se3& T_previous_keyframe, const Matrix6& c
 void PoseGraph::restore(std::uint16_t slot, const Node& node) {
   nodes_[slot] = node;
   nodes_[slot].position = static_cast<std::uint16_t>(size_);
+  set_covariance(nodes_[slot], node.covariance);
   order_[size_++] = slot;
   next_id_ = node.id + 1;
 }
@@ -202,7 +219,7 @@ void PoseGraph::place(const Node& stays, Node& moves, const Se3& T_stays_moves, 
     node.T_map_keyframe = displacement * node.T_map_keyframe;
     node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
   }
-  moves.covariance = stays.covariance + motion_in_map(stays.T_map_keyframe, T_stays_moves, of_motion);
+  set_covariance(moves, stays.covariance + motion_in_map(stays.T_map_keyframe, T_stays_moves, of_motion));
   relax_along_chain();
 }
 
@@ -324,14 +341,20 @@ void PoseGraph::linearise() {
   if (edge_ == count_ + loop_count_) begin_iterations();
 }
 
+void PoseGraph::set_covariance(Node& node, const Matrix6& covariance) {
+  node.covariance = covariance;
+  node.variance = generalised_variance(covariance);
+}
+
 // Sets the covariance of `node` to that of the path over `from`, if this path is more certain and the poses
-// agree with the motion between the two nodes. They may disagree until the graph is solved.
+// agree with the motion between the two nodes. They may disagree until the graph is solved. No path over a
+// node that is less certain can be more certain.
 void PoseGraph::relax(Node& node, const Node& from, const Se3& T_from_node, const Matrix6& between) const {
-  if (node.position == 0) return;
+  if (node.position == 0 || !(from.variance < node.variance)) return;
   const Matrix6 covariance = from.covariance + between;
-  if (!(generalised_variance(covariance) < generalised_variance(node.covariance))) return;
+  if (!(generalised_variance(covariance) < node.variance)) return;
   const Vector6 residual = difference(from.T_map_keyframe * T_from_node * node.T_map_keyframe.inverse());
-  if (mahalanobis_squared<6>(residual, between) <= kMostPlausibleMotion) node.covariance = covariance;
+  if (mahalanobis_squared<6>(residual, between) <= kMostPlausibleMotion) set_covariance(node, covariance);
 }
 
 void PoseGraph::relax_along_chain() {

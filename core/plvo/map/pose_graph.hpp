@@ -42,6 +42,7 @@ class PoseGraph {
     // Covariance of the perturbation (ρ, ω), along the path through the graph on which it is smallest. It is
     // an upper bound: the other paths would only make it smaller.
     Matrix6 covariance = Matrix6::Zero();
+    double variance = 0;     // generalised variance of `covariance`
     std::uint32_t id = 0;    // 1, 2, … in the order of the chain; 0: the slot is free
     std::uint32_t part = 0;  // the id of the node with which the part began
     std::uint16_t position = 0;
@@ -134,6 +135,7 @@ class PoseGraph {
   void begin_iterations();
   bool iterate();
   bool apply();
+  static void set_covariance(Node& node, const Matrix6& covariance);
   void relax(Node& node, const Node& from, const Se3& T_from_node, const Matrix6& between) const;
   void relax_along_chain();
   void share_out(const Node& older, const Node& newer, const Se3& T_older_newer, std::size_t begin,

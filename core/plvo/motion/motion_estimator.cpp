@@ -250,8 +250,7 @@ class ConsensusSolver {
     // kStalled counts as converged: no step lowers the cost any further.
     if (!converged(estimate_.lm.status) && estimate_.lm.status != LmStatus::kStalled)
       return StatusCode::kNotConverged;
-    // Not for a glance, whose motion is never reported.
-    if (start_.search_beside) find_shifts();
+    if (start_.find_shifts) find_shifts();
     estimate_.contain(apart);
     estimate_.T_current_reference = T_;
     estimate_.motions = motions_to_current(T_, solving_.references);

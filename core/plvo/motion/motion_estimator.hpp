@@ -67,8 +67,10 @@ struct MotionStart {
   const Se3* prediction;
   NuisanceParameters shared;
   bool estimated;
-  // For another motion, if this one explains too little, and for what each kind says (shifts).
+  // Another motion is searched if this one explains too little.
   bool search_beside = true;
+  // What each kind says is found (MotionEstimate::shifts).
+  bool find_shifts = true;
   // The matches were registered near the prediction. Outliers are then mostly parts of an object that moves,
   // and inliers among them are left out (neighbourhoods.hpp). Otherwise outliers are mostly wrong matches.
   bool registered = false;

@@ -380,7 +380,7 @@ void ReferenceTracking::glance(std::span<const Reference> references, const Curr
   Association association;
   associate_by_motion(references, current, T_current_base, association, false);
   MotionStart start(&T_current_base, {}, true);
-  start.search_beside = false;
+  start.search_beside = start.find_shifts = false;
   start.registered = true;
   estimate(association, current, start, kRoughSolve, tracked);
 }
