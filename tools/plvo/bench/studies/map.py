@@ -14,16 +14,18 @@ from concurrent.futures import ThreadPoolExecutor
 PICTURE = "map_recall.svg"
 # Scene, light, seed and width of the image in pixels; then the amount: in full, and with --quick. The longest first.
 PATROLS = [("hall", "constant", 21, 320), ("hall", "varying", 22, 320), ("hall", "constant", 21, 160), ("hall", "varying", 21, 160),
-           ("hall", "constant", 22, 160), ("desk", "constant", 22, 160), ("desk", "varying", 22, 160), ("corridor", "constant", 21, 160),
-           ("corridor", "varying", 22, 160), ("staircase", "constant", 21, 160)]
+           ("hall", "constant", 22, 160), ("desk", "constant", 22, 160), ("desk", "varying", 22, 160), ("corridor", "constant", 21, 320),
+           ("corridor", "varying", 22, 320), ("corridor", "constant", 21, 160), ("corridor", "varying", 22, 160),
+           ("staircase", "constant", 21, 160)]
 # Tables and picture are of the first six; the others show what a smaller image does.
 ROOMS = [(scene, light, 3, width) for scene, width in (("hall", 320), ("corridor", 320), ("desk", 160)) for light in ("constant", "varying")]
 SMALL = [(scene, light, 3, 160) for scene in ("hall", "corridor") for light in ("constant", "varying")]
-CARRIED = [(scene, light, 3, 320) for scene in ("hall", "desk", "corridor") for light in ("constant", "varying")] + [
+CARRIED = [(scene, light, 3, width) for width in (640, 320) for scene in ("hall", "desk", "corridor") for light in ("constant", "varying")] + [
     ("hall", "constant", 3, 240), ("desk", "constant", 3, 160), ("desk", "varying", 3, 160), ("corridor", "constant", 3, 160)]
-COSTS = [("hall", "constant", 3, 240), ("staircase", "constant", 3, 160)]
+COSTS = [("hall", "constant", 3, 640), ("hall", "constant", 3, 240), ("staircase", "constant", 3, 160)]
 SOAKS = [("desk", "constant", 3, 160)]
 AMOUNTS = {"patrol": (3000, 100), "soak": (100000, 2000), "carried": (50, 3), "recall": (10, 2), "cost": (200, 60)}
+LARGE, CARRIED_LARGE = 640, 17  # images that take long to render, and so fewer trials; none with --quick
 
 SHARES = [0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1]
 METRES = [0, 0.1, 0.2, 0.4, 0.7, 1, 1.5, 2.5]
@@ -36,7 +38,10 @@ def jobs(quick):
     # Times come last, when nothing else runs.
     for study, rooms in (("patrol", PATROLS), ("soak", SOAKS), ("carried", CARRIED), ("recall", ROOMS + SMALL), ("cost", COSTS)):
         for room in rooms:
-            yield study, room, AMOUNTS[study][quick]
+            if room[3] < LARGE:
+                yield study, room, AMOUNTS[study][quick]
+            elif not quick:
+                yield study, room, CARRIED_LARGE if study == "carried" else AMOUNTS[study][quick]
 
 
 def words_of(job):
@@ -79,8 +84,8 @@ def patrols(found, frames):
 Sequences of {frames} frames at 30 Hz, several rounds of the hall and the corridor, to and fro in the others, with `--map 256`.
 
 - **lost**: frames without a pose. The images are small, and the hall is 13 × 10 m with a depth camera that sees 5 m: with 160×120 the
-  camera is lost for a tenth to a fifth of the frames there, and most of the error is of the ways that were not seen. The patrols of
-  320×240 in the hall, and those at the desk and on the stairs, say more about the map.
+  camera is lost for a tenth to a fifth of the frames in the hall and the corridor, and most of the error is of the ways that were not
+  seen. The patrols of 320×240, and those at the desk and on the stairs, say more about the map.
 - **placed**: share of the poses of which the map knows the place in the end. The ATE of both are of these poses.
 - **loops**: those that joined the graph; each was compared with the true poses when it joined. **wrong**: farther from the truth than
   0.15 m or 0.1 rad.
@@ -188,7 +193,7 @@ def carried(found, trials):
     print(f"""
 ## Carried to a mapped place
 
-A map of 600 frames of a sequence; then {trials} times the camera is put beside this trajectory, up to 0.3 m to each side and ahead, 0.1 m up or down, turned by
+A map of 600 frames of a sequence; then {trials} times ({CARRIED_LARGE} times with {LARGE}×{LARGE * 3 // 4}) the camera is put beside this trajectory, up to 0.3 m to each side and ahead, 0.1 m up or down, turned by
 up to 10° to the side and 5° otherwise, and moves on. **carried**: it saw the beginning of the sequence, and was covered for a minute. The
 odometry may find itself by the keyframe that it kept. **switched on**: the odometry begins there, with the map from a file: the map alone
 must find the place. It is found in the first frame in which the map knows its position within 0.1 m (one standard deviation).
