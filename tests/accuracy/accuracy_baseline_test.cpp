@@ -42,6 +42,23 @@ TEST(AccuracyBaseline, NamesTheFigureThatIsWorse) {
   EXPECT_NE(rotation[0].find("degrees per second"), std::string::npos) << rotation[0];
 }
 
+// One start of six went wrong, before and now. The others became worse.
+TEST(AccuracyBaseline, SeesThatMostStartsBecameWorseBesideOneThatWentWrong) {
+  auto before = six_starts(8, 0.8, 9);
+  before[2].translation_mm_per_s = 60;
+  auto now = six_starts(10, 0.8, 9);
+  now[2].translation_mm_per_s = 60;
+  EXPECT_TRUE(compare(before, before).empty());
+  const auto worse = compare(before, now);
+  ASSERT_EQ(worse.size(), 1U);
+  EXPECT_NE(worse[0].find("mm per second of most starts 8.032 -> 10.04"), std::string::npos) << worse[0];
+  // The one that went wrong may be another one, or none.
+  auto other = six_starts(8, 0.8, 9);
+  other[5].translation_mm_per_s = 60;
+  EXPECT_TRUE(compare(before, other).empty());
+  EXPECT_TRUE(compare(before, six_starts(8, 0.8, 9)).empty());
+}
+
 TEST(AccuracyBaseline, RejectsACovarianceThatIsFartherFromTheTruthOnEitherSide) {
   const auto before = six_starts(8, 0.8, 9);
   EXPECT_EQ(compare(before, six_starts(8, 0.8, 18)).size(), 1U);

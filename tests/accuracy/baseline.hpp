@@ -23,6 +23,10 @@ struct Figures {
 
 struct Estimate {
   double mean = 0, deviation = 0;  // NaN where a start has no such figure
+  // The same without the start that is farthest from the median. One start that went wrong makes the
+  // deviation so large that chance would explain anything; these two still tell whether the others became
+  // worse.
+  double mean_of_most = 0, deviation_of_most = 0;
 };
 
 struct Row {
@@ -41,8 +45,9 @@ Status read_baseline(const std::filesystem::path& path, std::vector<Row>& rows);
 std::string baseline_text(const std::vector<Row>& rows);
 
 // How `now` is worse than `before` by more than chance, a sentence for each figure; empty if it is not.
-// Chance is three standard deviations of the difference of two means, 3 s √(2/n), with the baseline's s;
-// where the starts hardly differ, 2 % of an error and 0.05 of ln(NEES / 6), which no user notices. An error
+// Chance is three standard deviations of the difference of two means, 3 s √(2/n), with the baseline's s; for
+// the mean of most starts four, because its deviation is smaller than that of all by what was left out. Where
+// the starts hardly differ it is 2 % of an error and 0.05 of ln(NEES / 6), which no user notices. An error
 // may grow by it; ln(NEES / 6) may move away from 0 by it; L lost frames may become L + 3 √L. A figure that
 // existed must go on to exist.
 std::vector<std::string> worse_by_more_than_chance(const Row& before, const Row& now);
