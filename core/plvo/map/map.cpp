@@ -57,8 +57,8 @@ bool lies_within(const Vector6& delta, const Matrix6& covariance, double slack) 
   return mahalanobis_squared<6>(delta, covariance) <= slack * kMostPlausibleMotion;
 }
 
-// Comparisons in a frame while the place is unknown. Each takes the same time whatever the image, and a frame
-// of more pixels has more time.
+// Comparisons in a frame while the place is unknown. The features that a keyframe keeps bound the work of
+// each; the odometry's work grows with the pixels.
 int comparisons_if_unknown(const CameraModel& camera) {
   return 1 + camera.width * camera.height / kPixelsOfAComparison;
 }
