@@ -110,7 +110,7 @@ TEST(Map, FindsTheCameraWhereEachFrameIsAKeyframe) {
 // With 320×240 pixels two pairs are compared in a frame while the place is unknown, otherwise one.
 TEST(Map, ComparesMoreInAFrameOfALargerImageWhileThePlaceIsUnknown) {
   ProceduralSequence sequence(320, 240);
-  const Limits limits(320, 240, 250, 64, 2, 1, 0);
+  const Limits limits{320, 240, 250, 64, 2, 1, 0};
   std::vector<std::byte> memory(required_bytes(limits));
   Odometry odometry;
   ASSERT_TRUE(odometry.init(memory, sequence.camera(), Config(), limits).ok());
