@@ -102,6 +102,7 @@ class Pairs {
     const LmOptions lm{.max_iterations = 40, .step_tolerance = 1e-10};
     MotionStart start(&T, {}, true);
     start.search_beside = false;  // C_H then contains no other motion
+    start.find_shifts = false;    // leaves the terms as C_H was computed from them
     start.registered = config_.points.registered;
     estimate_motion(sets, {}, {}, config_.motion, lm, 1, start, memory, fusion.motion);
     fusion.I_P = test::information_of(points, fusion.motion.T_current_reference);

@@ -293,7 +293,8 @@ TEST(Theorem1, FusionBeatsEitherKind) {
   for (int trial = 0; trial < 20; ++trial) {
     const SimulatedPair pair = test::simulate(gaussian, 30, 12);
     MotionStart start = nullptr;
-    start.search_beside = false;  // leaves the terms as C_H was computed from them
+    start.search_beside = false;  // C_H then contains no other motion
+    start.find_shifts = false;    // leaves the terms as C_H was computed from them
     // The last step, after which H is not computed again, must not matter.
     const MotionEstimate estimate =
         bench.estimate(pair, {}, 1, start, {.max_iterations = 40, .step_tolerance = 1e-10});

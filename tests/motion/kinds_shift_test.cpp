@@ -107,7 +107,7 @@ TEST(KindsShift, LeavesTheConsensusAsItWas) {
   const SimulatedPair pair = test::simulate(gaussian, kPoints, kLines, 0.3);
   const MotionEstimate estimate = bench.estimate(pair);
   MotionStart no_shifts = nullptr;
-  no_shifts.search_beside = false;
+  no_shifts.find_shifts = false;
   Bench other;
   const MotionEstimate without = other.estimate(pair, {}, 1, no_shifts);
   ASSERT_EQ(estimate.status, StatusCode::kOk);
