@@ -22,7 +22,7 @@ constexpr int kSharingRounds = 5;
 
 Se3 displacement(const Vector6& x) { return {rotation_exp(x.tail<3>()), x.head<3>()}; }
 
-// J C Jᵀ with J = (I lever; 0 I): ρ = v + [t]× ω for a pose at t, and the inverse of that.
+// J C Jᵀ of a symmetric C with J = (I lever; 0 I): ρ = v + [t]× ω for a pose at t, and the inverse of that.
 Matrix6 transform(const Matrix6& C, const Matrix3& lever) {
   const Matrix3 D = C.block<3, 3>(3, 3);
   const Matrix3 B = C.block<3, 3>(0, 3) + lever * D;
@@ -352,9 +352,12 @@ void PoseGraph::set_covariance(Node& node, const Matrix6& covariance) {
 void PoseGraph::relax(Node& node, const Node& from, const Se3& T_from_node, const Matrix6& between) const {
   if (node.position == 0 || !(from.variance < node.variance)) return;
   const Matrix6 covariance = from.covariance + between;
-  if (!(generalised_variance(covariance) < node.variance)) return;
+  const double variance = generalised_variance(covariance);
+  if (!(variance < node.variance)) return;
   const Vector6 residual = difference(from.T_map_keyframe * T_from_node * node.T_map_keyframe.inverse());
-  if (mahalanobis_squared<6>(residual, between) <= kMostPlausibleMotion) set_covariance(node, covariance);
+  if (!(mahalanobis_squared<6>(residual, between) <= kMostPlausibleMotion)) return;
+  node.covariance = covariance;
+  node.variance = variance;
 }
 
 void PoseGraph::relax_along_chain() {

@@ -79,9 +79,9 @@ def main(words=None):
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/results", help="folder of the pages")
     parser.add_argument("names", nargs="*", help=f"pages to write, of {', '.join(PAGES)} (default: all)")
     arguments = parser.parse_args(words)
-    arguments.out.mkdir(parents=True, exist_ok=True)
     if unknown := set(arguments.names) - set(PAGES):
         parser.error(f"no such page: {' '.join(sorted(unknown))}")
+    arguments.out.mkdir(parents=True, exist_ok=True)
     for name in arguments.names or PAGES:
         text = measure(name, arguments.bench.resolve(), arguments.data, arguments.work.resolve())
         (arguments.out / f"{name}.md").write_text(text, encoding="utf-8")
