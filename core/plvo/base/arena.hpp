@@ -87,7 +87,9 @@ class Arena {
   static std::span<T> construct(std::byte* bytes, std::size_t count) {
     if (bytes == nullptr) return {};
     T* first = reinterpret_cast<T*>(bytes);
-    for (std::size_t i = 0; i < count; ++i) new (first + i) T;
+    // Compilers keep the empty loop of a type that has nothing to initialise.
+    if constexpr (!std::is_trivially_default_constructible_v<T>)
+      for (std::size_t i = 0; i < count; ++i) new (first + i) T;
     return {first, count};
   }
   // A counting arena saturates at its capacity.

@@ -33,29 +33,31 @@ struct EndOffsets {
   Matrix<2, 4> C_le;  // covariance of lambda with e
 };
 
+// Gᵀ Λ_ij U for the ends i and j: covariance of the offsets of end i (two across the line, one along it) with
+// those of end j across it. Both columns are computed at once.
+inline void covariance_of_ends(const Line3d& line, int i, int j, const Matrix3& G, Pair (&block)[3]) {
+  const Pair U[3] = {{G(0, 0), G(0, 1)}, {G(1, 0), G(1, 1)}, {G(2, 0), G(2, 1)}};
+  Pair right[3];
+  for (int r = 0; r < 3; ++r)
+    right[r] = line.Sigma(3 * i + r, 3 * j) * U[0] + line.Sigma(3 * i + r, 3 * j + 1) * U[1] +
+               line.Sigma(3 * i + r, 3 * j + 2) * U[2];
+  for (int k = 0; k < 3; ++k) block[k] = G(0, k) * right[0] + G(1, k) * right[1] + G(2, k) * right[2];
+}
+
 EndOffsets observe(const Line3d& line, const Vector3& q, const Matrix3& G) {
   EndOffsets offsets;
   const Vector3 a = G.transpose().lazyProduct(line.a - q);
   const Vector3 b = G.transpose().lazyProduct(line.b - q);
   offsets.e << a.x(), a.y(), b.x(), b.y();
   offsets.lambda << a.z(), b.z();
-  // Computes Λ [U 0; 0 U] first, since only those columns of Gᵀ Λ G that lie across the line are needed. The
-  // two columns of one end are computed at once.
-  const Pair U[3] = {{G(0, 0), G(0, 1)}, {G(1, 0), G(1, 1)}, {G(2, 0), G(2, 1)}};
-  for (int j = 0; j < 2; ++j) {
-    Pair right[6];
-    for (int r = 0; r < 6; ++r)
-      right[r] =
-          line.Sigma(r, 3 * j) * U[0] + line.Sigma(r, 3 * j + 1) * U[1] + line.Sigma(r, 3 * j + 2) * U[2];
+  for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
-      const Pair* block = right + 3 * i;
-      for (int k = 0; k < 3; ++k) {
-        const Pair row = G(0, k) * block[0] + G(1, k) * block[1] + G(2, k) * block[2];
+      Pair block[3];
+      covariance_of_ends(line, i, j, G, block);
+      for (int k = 0; k < 3; ++k)
         for (int c = 0; c < 2; ++c)
-          (k < 2 ? offsets.C(2 * i + k, 2 * j + c) : offsets.C_le(i, 2 * j + c)) = row[c];
-      }
+          (k < 2 ? offsets.C(2 * i + k, 2 * j + c) : offsets.C_le(i, 2 * j + c)) = block[k][c];
     }
-  }
   return offsets;
 }
 
@@ -81,22 +83,21 @@ struct Interpolation {
       for (int k = 0; k < 2; ++k) result[2 * i + k] = n[0][i] * y[k] + n[1][i] * y[2 + k];
     return result;
   }
-  // N C Nᵀ
+  // N C Nᵀ, rows of end r and columns of end i.
+  void sandwich(const Matrix4& C, int r, int i, Pair (&columns)[2]) const {
+    Pair NC[4];
+    for (int c = 0; c < 4; ++c) NC[c] = n[r][0] * Pair{C(0, c), C(1, c)} + n[r][1] * Pair{C(2, c), C(3, c)};
+    for (int k = 0; k < 2; ++k) columns[k] = n[i][0] * NC[k] + n[i][1] * NC[2 + k];
+  }
   Matrix4 sandwich(const Matrix4& C) const {
-    Pair NC[2][4];  // two rows each
-    for (int c = 0; c < 4; ++c) {
-      const Pair first = {C(0, c), C(1, c)};
-      const Pair second = {C(2, c), C(3, c)};
-      for (int i = 0; i < 2; ++i) NC[i][c] = n[i][0] * first + n[i][1] * second;
-    }
     Matrix4 result;
     for (int r = 0; r < 2; ++r)
-      for (int i = 0; i < 2; ++i)
-        for (int k = 0; k < 2; ++k) {
-          const Pair rows = n[i][0] * NC[r][k] + n[i][1] * NC[r][2 + k];
-          result(2 * r, 2 * i + k) = rows[0];
-          result(2 * r + 1, 2 * i + k) = rows[1];
-        }
+      for (int i = 0; i < 2; ++i) {
+        Pair columns[2];
+        sandwich(C, r, i, columns);
+        for (int k = 0; k < 2; ++k)
+          for (int row = 0; row < 2; ++row) result(2 * r + row, 2 * i + k) = columns[k][row];
+      }
     return result;
   }
 };
@@ -261,10 +262,30 @@ double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double 
   const double bound = current.Sigma.trace() + N_squared * reference.C.trace();
   if (!(squared_norm <= cutoff * bound)) return squared_norm / bound;
 
-  const EndOffsets offsets = observe(current, q, G);
+  // Only the lower triangle of the covariance is needed. The offsets of one end have a squared distance of
+  // their own, which that of both ends exceeds; it rejects most of the other outliers.
+  Matrix4 C;
+  const auto add_block = [&](int row, int column) {
+    Pair own[3], of_reference[2];
+    covariance_of_ends(current, row, column, G, own);
+    N.sandwich(reference.C, row, column, of_reference);
+    for (int k = 0; k < 2; ++k)
+      for (int c = 0; c < 2; ++c) C(2 * row + k, 2 * column + c) = own[k][c] + of_reference[c][k];
+  };
+  const Vector4 e(a.x(), a.y(), b.x(), b.y());
+  for (int end = 0; end < 2; ++end) {
+    add_block(end, end);
+    const double* S = &C(2 * end, 2 * end);
+    const double x = e[2 * end];
+    const double y = e[2 * end + 1];
+    const double determinant = S[0] * S[5] - S[1] * S[1];
+    const double scaled = x * x * S[5] - 2 * x * y * S[1] + y * y * S[0];
+    if (determinant > 0 && scaled > cutoff * determinant) return scaled / determinant;
+  }
+  add_block(1, 0);
   Cholesky<4> cholesky;
-  if (!cholesky.factor(offsets.C + N.sandwich(reference.C))) return 2 * cutoff;
-  return cholesky.solve_lower(offsets.e).squaredNorm();
+  if (!cholesky.factor(C)) return 2 * cutoff;
+  return cholesky.solve_lower(e).squaredNorm();
 }
 
 void LineConstraints::begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel&,
