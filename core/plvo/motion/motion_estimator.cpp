@@ -250,7 +250,7 @@ class ConsensusSolver {
     // kStalled counts as converged: no step lowers the cost any further.
     if (!converged(estimate_.lm.status) && estimate_.lm.status != LmStatus::kStalled)
       return StatusCode::kNotConverged;
-    if (start_.find_shifts) find_shifts();
+    if (start_.find_shifts && (start_.find_shifts_of_other || !estimate_.is_other)) find_shifts();
     estimate_.contain(apart);
     estimate_.T_current_reference = T_;
     estimate_.motions = motions_to_current(T_, solving_.references);

@@ -69,8 +69,9 @@ struct MotionStart {
   bool estimated;
   // Another motion is searched if this one explains too little.
   bool search_beside = true;
-  // What each kind says is found (MotionEstimate::shifts).
+  // What each kind says is found (MotionEstimate::shifts), for another motion (is_other) only with the second.
   bool find_shifts = true;
+  bool find_shifts_of_other = true;
   // The matches were registered near the prediction. Outliers are then mostly parts of an object that moves,
   // and inliers among them are left out (neighbourhoods.hpp). Otherwise outliers are mostly wrong matches.
   bool registered = false;

@@ -40,7 +40,7 @@ bool recognise(const Window::Frame& keyframe, const CurrentFrame& frame, const V
   tracking.find(kept, frame, Se3{}, anywhere_px, tracked);
   if (tracked.ok() && context.config.points.registered) {
     const Se3 T_current_reference = tracked.motion.T_current_reference;
-    tracking.refine({&kept, 1}, frame, T_current_reference, tracked);
+    tracking.refine({&kept, 1}, frame, T_current_reference, false, tracked);
   }
   return tracked.ok() &&
          still_seen(keyframe.features, tracking.tracks(0), context.config.references.keyframe_inlier_ratio) &&

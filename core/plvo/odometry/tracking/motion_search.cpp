@@ -135,6 +135,7 @@ class MotionSearch {
   // All must outlive this object. tracked: what the last estimate found.
   MotionSearch(const CurrentFrame& current, ReferenceTracking& tracking, TrackedMotion& tracked)
       : current_(current),
+        scope_(current.context.scratch),
         tracking_(tracking),
         tracked_(tracked),
         references_(current.predicted.references),
@@ -195,8 +196,8 @@ class MotionSearch {
   }
 
   bool refine(Se3 T_current_base) {
-    for (int i = 0; i < kMostRegistrations; ++i) {
-      tracking_.refine(references_, current_, T_current_base, tracked_);
+    for (int i = 1; i <= kMostRegistrations; ++i) {
+      tracking_.refine(references_, current_, T_current_base, i < kMostRegistrations, tracked_);
       if (!tracked_.ok() || !tracked_.motion.is_other) break;
       T_current_base = tracked_.motion.T_current_reference;
     }
@@ -206,11 +207,12 @@ class MotionSearch {
   // times: the motion becomes the best one if it explains more than this many times what the best
   // one so far explains.
   Explained explain(const Se3& start, double times = 1) {
+    keep_best();
     Explained explained;
     if (refine(start)) explained = explained_by_tracked();
     if (!explained.explains_proven) explained.evidence *= kWorthOfContradicted;
     last_is_best_ = explained.evidence > times * best_.explained.evidence;
-    if (last_is_best_) best_ = {start, tracked_.motion.T_current_reference, explained};
+    if (last_is_best_) best_ = {tracked_.motion.T_current_reference, explained};
     return explained;
   }
 
@@ -219,8 +221,17 @@ class MotionSearch {
     return tracked_.ok() ? explained_by_tracked() : Explained{};
   }
 
+  // Before the next estimate: keeps the last one if it is the best so far.
+  void keep_best() {
+    if (!last_is_best_) return;
+    tracking_.keep(tracked_, current_.context.scratch, kept_);
+    last_is_best_ = false;
+  }
+
   void take_best() {
-    if (!last_is_best_ && best_.explained.evidence > 0) (void)refine(best_.start);
+    if (last_is_best_ || !(best_.explained.evidence > 0)) return;
+    tracking_.put_back(*kept_, tracked_);
+    last_is_best_ = true;
   }
 
   // Glances at the aligned motion, which is `start`, and at the predicted one. Writes the one to start from
@@ -241,29 +252,33 @@ class MotionSearch {
 
   // Tries the motion that the descriptors of one reference give. Returns whether it is accepted.
   bool find(const Reference& from, const Se3& T_predicted, double radius_px) {
-    last_is_best_ = false;
+    keep_best();
     tracking_.find(from, current_, T_predicted, radius_px, tracked_);
     if (!tracked_.ok()) return false;
     if (!is_registered()) return true;
     const Se3 start = tracked_.motion.T_current_reference * from.pose.T_reference_base;
     // A motion is also accepted if two searches lead to it.
-    if (best_.explained.evidence > 0 && !is_other_motion(start, best_.motion))
-      return best_.explained.explains_proven && refine(best_.start);
+    if (best_.explained.evidence > 0 && !is_other_motion(start, best_.motion)) {
+      take_best();
+      return best_.explained.explains_proven;
+    }
     const Explained found = explain(start);
     return found.share >= kAcceptedShareByFeatures && found.explains_proven;
   }
 
   const CurrentFrame& current_;
+  ScratchScope scope_;
   ReferenceTracking& tracking_;
   TrackedMotion& tracked_;
   std::span<const Reference> references_;
   const Reference& latest_;
-  // The motion that explains most so far, the start that led to it, and what it explains.
+  // The motion that explains most so far, and what it explains.
   struct {
-    Se3 start, motion;
+    Se3 motion;
     Explained explained;
   } best_;
-  bool last_is_best_ = false;  // the last estimate is that of best_
+  bool last_is_best_ = false;  // the last estimate is that of best_; otherwise it is kept
+  KeptEstimate* kept_ = nullptr;
 };
 
 }  // namespace

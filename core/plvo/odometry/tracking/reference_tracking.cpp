@@ -2,6 +2,7 @@
 #include "plvo/odometry/tracking/reference_tracking.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "plvo/motion/prior_constraint.hpp"
 #include "plvo/odometry/tracking/carried_features.hpp"
@@ -122,7 +123,24 @@ TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, con
           context.carried};
 }
 
+template <typename T>
+void copy_elements(const FixedVector<T>& from, FixedVector<T>& to) {
+  to.resize(from.size());
+  std::copy(from.begin(), from.end(), to.begin());
+}
+
 }  // namespace
+
+void ReferenceTracks::copy(const ReferenceTracks& other) {
+  copy_elements(other.points.matches, points.matches);
+  std::copy(other.points.pixels.begin(), other.points.pixels.end(), points.pixels.begin());
+  std::copy(other.points.points.begin(), other.points.points.end(), points.points.begin());
+  std::copy(other.point_inliers.begin(), other.point_inliers.end(), point_inliers.begin());
+  copy_elements(other.lines, lines);
+  std::copy(other.line_inliers.begin(), other.line_inliers.end(), line_inliers.begin());
+  copy_elements(other.surfaces, surfaces);
+  inliers = other.inliers;
+}
 
 std::size_t latest_of(std::span<const Reference> references) {
   std::size_t latest = 0;
@@ -386,7 +404,7 @@ void ReferenceTracking::glance(std::span<const Reference> references, const Curr
 }
 
 void ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
-                               const Se3& T_current_base, TrackedMotion& tracked) {
+                               const Se3& T_current_base, bool leads_on, TrackedMotion& tracked) {
   const StageContext& context = current.context;
   const ScratchScope scope(context.scratch);
   Association association;
@@ -396,11 +414,31 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
       nuisance_parameters(context.config.noise, association.features[latest].current_exposure, context.noise);
   MotionStart start{&T_current_base, shared, true};
   start.registered = true;
+  start.find_shifts_of_other = !leads_on;
   estimate(association, current, start, kFineSolve, tracked);
   if (tracked.ok()) look_beside_stayed(references, current, association, start, tracked);
   if (tracked.ok())
     tracked.exposure =
         current_exposure(context.camera, references[latest].timing, tracked.motion.motions[latest]);
+}
+
+void ReferenceTracking::keep(const TrackedMotion& tracked, Arena& scratch, KeptEstimate*& kept) const {
+  if (kept == nullptr) {
+    kept = KeptEstimate::take(scratch).data();
+    for (std::size_t r = 0; r < kMaxReferences; ++r) kept->tracks[r].allocate_like(scratch, tracks_[r]);
+    assert(!scratch.exhausted());  // reserve()
+  }
+  for (std::size_t r = 0; r < kMaxReferences; ++r) kept->tracks[r].copy(tracks_[r]);
+  kept->tracked = tracked;
+}
+
+void ReferenceTracking::put_back(const KeptEstimate& kept, TrackedMotion& tracked) {
+  for (std::size_t r = 0; r < kMaxReferences; ++r) tracks_[r].copy(kept.tracks[r]);
+  const int ransac_iterations = tracked.ransac_iterations;
+  const int lm_iterations = tracked.lm_iterations;
+  tracked = kept.tracked;
+  tracked.ransac_iterations = ransac_iterations;
+  tracked.lm_iterations = lm_iterations;
 }
 
 }  // namespace plvo

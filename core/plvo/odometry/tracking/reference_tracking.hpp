@@ -35,14 +35,25 @@ struct ReferenceTracks {
   int inliers = 0;  // points and lines
 
   constexpr void allocate(Arena& memory, const Limits& limits) {
-    points.allocate(memory, limits.keypoints);
-    point_inliers = memory.take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
-    const auto segments = static_cast<std::size_t>(limits.segments);
+    allocate(memory, limits.keypoints, static_cast<std::size_t>(limits.segments),
+             static_cast<std::size_t>(limits.surfaces));
+  }
+  // With the capacities of `other`.
+  void allocate_like(Arena& memory, const ReferenceTracks& other) {
+    allocate(memory, static_cast<int>(other.points.matches.capacity()), other.lines.capacity(),
+             other.surfaces.capacity());
+  }
+  // The capacities are at least the sizes of `other`.
+  void copy(const ReferenceTracks& other);
+
+ private:
+  constexpr void allocate(Arena& memory, int keypoints, std::size_t segments, std::size_t samples) {
+    points.allocate(memory, keypoints);
+    point_inliers = memory.take<std::uint8_t>("point tracks", static_cast<std::size_t>(keypoints));
     lines = FixedVector<Match>(memory.take<Match>("line tracks", segments));
     line_inliers = memory.take<std::uint8_t>("line tracks", segments);
-    if (limits.surfaces > 0)
-      surfaces = FixedVector<SurfaceMatch>(
-          memory.take<SurfaceMatch>("surface tracks", static_cast<std::size_t>(limits.surfaces)));
+    if (samples > 0)
+      surfaces = FixedVector<SurfaceMatch>(memory.take<SurfaceMatch>("surface tracks", samples));
   }
 };
 
@@ -76,16 +87,28 @@ struct TrackedMotion {
   int inliers() const { return points.inliers + lines.inliers; }
 };
 
+// An estimate with its tracks, kept while other motions are tried.
+struct KeptEstimate {
+  std::array<ReferenceTracks, kMaxReferences> tracks;
+  TrackedMotion tracked;
+
+  static constexpr std::span<KeptEstimate> take(Arena& memory) {
+    return memory.take<KeptEstimate>("kept estimate", 1);
+  }
+};
+
 class ReferenceTracking {
  public:
   constexpr void allocate(Arena& memory, const Limits& limits) {
-    for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
-      tracks_[r].allocate(memory, limits);
+    allocate_tracks(memory, limits);
     alignment_.allocate(memory, limits.width, limits.height);
   }
   // Reserves the scratch of the largest stage; the stages run one after the other.
   static constexpr void reserve(Arena& memory, const Limits& limits) {
     const ScratchScope scope(memory);
+    KeptEstimate::take(memory);
+    ReferenceTracking kept;
+    kept.allocate_tracks(memory, limits);
     {
       const ScratchScope aligning(memory);
       SparseAlignment::take_windows(memory);
@@ -111,19 +134,29 @@ class ReferenceTracking {
   void find(const Reference& reference, const CurrentFrame& current, const Se3& T_predicted, double radius_px,
             TrackedMotion& tracked);
   // Estimates the motion from the base with all references at once (1 … Limits::references), registered from
-  // T_current_base.
+  // T_current_base. leads_on: if the result is another motion (is_other), the caller refines again from it, so
+  // it has no shifts.
   void refine(std::span<const Reference> references, const CurrentFrame& current, const Se3& T_current_base,
-              TrackedMotion& tracked);
+              bool leads_on, TrackedMotion& tracked);
 
   // A rough estimate from a sample of the points and the lines, at a fifth of the cost: it tells which of two
   // motions to start from.
   void glance(std::span<const Reference> references, const CurrentFrame& current, const Se3& T_current_base,
               TrackedMotion& tracked);
 
+  // Keeps the last estimate, in scratch memory that is taken with the first one: kept is null before.
+  void keep(const TrackedMotion& tracked, Arena& scratch, KeptEstimate*& kept) const;
+  // Makes the kept estimate the last one. The numbers of iterations stay those of all estimates.
+  void put_back(const KeptEstimate& kept, TrackedMotion& tracked);
+
   // Tracks of the last call, in the order of its references.
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
+  constexpr void allocate_tracks(Arena& memory, const Limits& limits) {
+    for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
+      tracks_[r].allocate(memory, limits);
+  }
   // What an estimate needs besides the matches (tracks_): the features of each reference after
   // row-time compensation, which lie in the scratch, and the poses of the references.
   struct Association {
