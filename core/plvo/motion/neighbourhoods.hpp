@@ -14,12 +14,13 @@
 
 namespace plvo {
 
-// First count all usable matches, then ask for each inlier. Takes 2 kB.
+// First count all usable matches, then ask for each inlier. Takes 2.3 kB.
 class Neighbourhoods {
  public:
   Neighbourhoods() { counts_.fill({}); }
   void count(std::size_t cell, bool is_inlier) {
-    std::uint8_t& matches = is_inlier ? counts_[cell].inliers : counts_[cell].outliers;
+    Counts& counts = counts_[index_of(cell)];
+    std::uint8_t& matches = is_inlier ? counts.inliers : counts.outliers;
     if (matches < 255) ++matches;
     ++(is_inlier ? inliers_ : outliers_);
   }
@@ -27,14 +28,12 @@ class Neighbourhoods {
   // kLeastOutliers or more, and more than kTimesTheInliers times as many as other inliers. Where outliers are
   // the majority of all matches, both numbers grow with outliers per inlier: wrong matches lie everywhere.
   bool is_isolated(std::size_t cell) const {
-    const int x = static_cast<int>(cell % ImageCells::kSide);
-    const int y = static_cast<int>(cell / ImageCells::kSide);
     int inliers = -1, outliers = 0;
-    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, ImageCells::kSide - 1); ++v)
-      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, ImageCells::kSide - 1); ++u) {
-        const Counts& counts = counts_[static_cast<std::size_t>(v * ImageCells::kSide + u)];
-        inliers += counts.inliers;
-        outliers += counts.outliers;
+    const Counts* row = &counts_[index_of(cell) - kStride - 1];
+    for (int v = 0; v < 3; ++v, row += kStride)
+      for (int u = 0; u < 3; ++u) {
+        inliers += row[u].inliers;
+        outliers += row[u].outliers;
       }
     const int majority = std::max(inliers_, outliers_);
     return outliers * inliers_ >= kLeastOutliers * majority &&
@@ -51,7 +50,13 @@ class Neighbourhoods {
   static constexpr int kLeastOutliers = 4;
   static constexpr int kTimesTheInliers = 2;
 
-  std::array<Counts, ImageCells::kCount> counts_;
+  // A border of empty cells surrounds the image.
+  static constexpr std::size_t kStride = ImageCells::kSide + 2;
+  static constexpr std::size_t index_of(std::size_t cell) {
+    return (cell / ImageCells::kSide + 1) * kStride + cell % ImageCells::kSide + 1;
+  }
+
+  std::array<Counts, kStride * kStride> counts_;
   int inliers_ = 0, outliers_ = 0;
 };
 

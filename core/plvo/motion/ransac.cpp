@@ -143,9 +143,12 @@ bool Ransac::run_beside(std::uint64_t seed, const Se3* prediction, Se3& T, Ransa
   return found;
 }
 
-void Ransac::start(Gain gain, RansacSummary& summary) {
+void Ransac::start(Gain by, RansacSummary& summary) {
   summary = {};
-  gain_ = gain;
+  gain_ = by;
+  possible_ = 0;
+  for (const RansacCandidate& candidate : leading_)
+    possible_ += gain(candidate) * kFreshScale * threshold_[candidate.set];
   fresh_to_beat_ = 0;
   inliers_ = 0;
 }
@@ -278,10 +281,8 @@ bool Ransac::rate(const Se3& T, Se3& best, RansacSummary& summary) {
 
 // Score of an unrefined hypothesis, or 0 as soon as it cannot exceed to_beat.
 double Ransac::score(const Se3& T, double to_beat) const {
-  double possible = 0;
+  double possible = possible_;
   const MotionsToCurrent motions = motions_to_current(T, references_);
-  for (const RansacCandidate& candidate : leading_)
-    possible += gain(candidate) * kFreshScale * threshold_[candidate.set];
   for (const RansacCandidate& candidate : leading_) {
     const double threshold = kFreshScale * threshold_[candidate.set];
     const ConstraintSet& set = *sets_[candidate.set];
