@@ -72,6 +72,10 @@ class Arena {
   // Scratch memory: mark(), then take(), then rewind() to the mark. Stages nest like a stack.
   constexpr std::size_t mark() const { return used_; }
   constexpr void rewind(std::size_t mark) { used_ = mark; }
+  // The memory that was taken since the mark; empty if the arena only counts.
+  constexpr std::span<std::byte> since(std::size_t mark) {
+    return counts_ ? std::span<std::byte>() : std::span(base_ + mark, used_ - mark);
+  }
 
   // Ends the allocation of init: later takes are scratch and leave no record.
   void seal() { sealed_ = true; }

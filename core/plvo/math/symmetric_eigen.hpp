@@ -16,11 +16,20 @@ struct SymmetricEigen {
   Matrix<N, N> vectors;  // column k belongs to values[k]; orthonormal
 };
 
-// Diagonalises the n × n matrix A in place. V must be the identity before the call and holds the eigenvectors
-// after it. Convergence is quadratic, so 4 to 6 sweeps usually suffice. A finite matrix of these sizes never
-// reaches the limit of 12.
+// Eigenvalues, the diagonal of A afterwards, and eigenvectors V of the n × n matrix `symmetric`, whose lower
+// triangle is read. Convergence is quadratic, so 4 to 6 sweeps usually suffice. A finite matrix of these sizes
+// never reaches the limit of 12.
 template <typename Size>
-inline void diagonalise(double* A, double* V, Size n, double tiny) {
+inline void diagonalise(const double* symmetric, Size n, double* A, double* V) {
+  double squared_norm = 0;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const double entry = symmetric[i >= j ? i + j * n : j + i * n];
+      A[i + j * n] = entry;
+      V[i + j * n] = i == j ? 1 : 0;
+      squared_norm += entry * entry;
+    }
+  const double tiny = 1e-32 * squared_norm;
   constexpr int kMaxSweeps = 12;
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double off_diagonal = 0;
@@ -54,13 +63,8 @@ inline void diagonalise(double* A, double* V, Size n, double tiny) {
 template <int N>
 SymmetricEigen<N> symmetric_eigen(const Matrix<N, N>& matrix) {
   SymmetricEigen<N> result;
-  Matrix<N, N> A = matrix.template selfadjointView<Eigen::Lower>();
-  result.vectors.setIdentity();
-  // By columns, because Eigen sums a large matrix in a loop in the size-optimised build
-  // (PLVO_SIZE_DEFINITIONS).
-  double squared_norm = 0;
-  for (int j = 0; j < N; ++j) squared_norm += A.col(j).squaredNorm();
-  diagonalise(A.data(), result.vectors.data(), matrix_size<N>(), 1e-32 * squared_norm);
+  Matrix<N, N> A;
+  diagonalise(matrix.data(), matrix_size<N>(), A.data(), result.vectors.data());
   result.values = A.diagonal();
   return result;
 }

@@ -33,15 +33,19 @@ struct EndOffsets {
   Matrix<2, 4> C_le;  // covariance of lambda with e
 };
 
-// Gᵀ Λ_ij U for the ends i and j: covariance of the offsets of end i (two across the line, one along it) with
-// those of end j across it. Both columns are computed at once.
-inline void covariance_of_ends(const Line3d& line, int i, int j, const Matrix3& G, Pair (&block)[3]) {
+// Writes the covariance of the offsets of end i across the line with those of end j, a block of Uᵀ Λ U, and
+// returns that of the offset along the line, a row of dᵀ Λ U. Both columns are computed at once.
+Pair observe_ends(const Line3d& line, int i, int j, const Matrix3& G, Matrix4& C) {
   const Pair U[3] = {{G(0, 0), G(0, 1)}, {G(1, 0), G(1, 1)}, {G(2, 0), G(2, 1)}};
   Pair right[3];
   for (int r = 0; r < 3; ++r)
     right[r] = line.Sigma(3 * i + r, 3 * j) * U[0] + line.Sigma(3 * i + r, 3 * j + 1) * U[1] +
                line.Sigma(3 * i + r, 3 * j + 2) * U[2];
-  for (int k = 0; k < 3; ++k) block[k] = G(0, k) * right[0] + G(1, k) * right[1] + G(2, k) * right[2];
+  Pair row[3];
+  for (int k = 0; k < 3; ++k) row[k] = G(0, k) * right[0] + G(1, k) * right[1] + G(2, k) * right[2];
+  for (int k = 0; k < 2; ++k)
+    for (int c = 0; c < 2; ++c) C(2 * i + k, 2 * j + c) = row[k][c];
+  return row[2];
 }
 
 EndOffsets observe(const Line3d& line, const Vector3& q, const Matrix3& G) {
@@ -52,11 +56,8 @@ EndOffsets observe(const Line3d& line, const Vector3& q, const Matrix3& G) {
   offsets.lambda << a.z(), b.z();
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
-      Pair block[3];
-      covariance_of_ends(line, i, j, G, block);
-      for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 2; ++c)
-          (k < 2 ? offsets.C(2 * i + k, 2 * j + c) : offsets.C_le(i, 2 * j + c)) = block[k][c];
+      const Pair along = observe_ends(line, i, j, G, offsets.C);
+      for (int c = 0; c < 2; ++c) offsets.C_le(i, 2 * j + c) = along[c];
     }
   return offsets;
 }
@@ -83,22 +84,14 @@ struct Interpolation {
       for (int k = 0; k < 2; ++k) result[2 * i + k] = n[0][i] * y[k] + n[1][i] * y[2 + k];
     return result;
   }
-  // N C Nᵀ, rows of end r and columns of end i.
-  void sandwich(const Matrix4& C, int r, int i, Pair (&columns)[2]) const {
+  // Adds the block of N C Nᵀ with the rows of end r and the columns of end i to the same block of `sum`.
+  void add_sandwich(const Matrix4& C, int r, int i, Matrix4& sum) const {
     Pair NC[4];
     for (int c = 0; c < 4; ++c) NC[c] = n[r][0] * Pair{C(0, c), C(1, c)} + n[r][1] * Pair{C(2, c), C(3, c)};
-    for (int k = 0; k < 2; ++k) columns[k] = n[i][0] * NC[k] + n[i][1] * NC[2 + k];
-  }
-  Matrix4 sandwich(const Matrix4& C) const {
-    Matrix4 result;
-    for (int r = 0; r < 2; ++r)
-      for (int i = 0; i < 2; ++i) {
-        Pair columns[2];
-        sandwich(C, r, i, columns);
-        for (int k = 0; k < 2; ++k)
-          for (int row = 0; row < 2; ++row) result(2 * r + row, 2 * i + k) = columns[k][row];
-      }
-    return result;
+    for (int k = 0; k < 2; ++k) {
+      const Pair rows = n[i][0] * NC[k] + n[i][1] * NC[2 + k];
+      for (int row = 0; row < 2; ++row) sum(2 * r + row, 2 * i + k) += rows[row];
+    }
   }
 };
 
@@ -127,7 +120,7 @@ struct Observed {
 bool observe_both(const EndOffsets& first, const Line3d& current, const Se3& T, const Landmark& landmark,
                   Observed& at) {
   at.G_current = T.R.lazyProduct(at.G);
-  const EndOffsets second = observe(current, T * landmark.q, at.G_current);
+  EndOffsets second = observe(current, T * landmark.q, at.G_current);
 
   // The optimal positions along the line are the measured ones, corrected through the correlation of λ and e:
   // λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w_current and C⁻¹ e = w_reference.
@@ -136,7 +129,9 @@ bool observe_both(const EndOffsets& first, const Line3d& current, const Se3& T, 
   const Interpolation N(at.stations, at.ends);
 
   at.offset = N * first.e;
-  if (!at.W.factor(second.C + N.sandwich(first.C))) return false;
+  for (int r = 0; r < 2; ++r)
+    for (int i = 0; i <= r; ++i) N.add_sandwich(first.C, r, i, second.C);
+  if (!at.W.factor(second.C)) return false;
   const Vector4 c = second.e - at.offset;
   at.w = at.W.solve(c);
   at.w_reference = -N.transpose_times(at.w);
@@ -266,11 +261,8 @@ double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double 
   // their own, which that of both ends exceeds; it rejects most of the other outliers.
   Matrix4 C;
   const auto add_block = [&](int row, int column) {
-    Pair own[3], of_reference[2];
-    covariance_of_ends(current, row, column, G, own);
-    N.sandwich(reference.C, row, column, of_reference);
-    for (int k = 0; k < 2; ++k)
-      for (int c = 0; c < 2; ++c) C(2 * row + k, 2 * column + c) = own[k][c] + of_reference[c][k];
+    (void)observe_ends(current, row, column, G, C);
+    N.add_sandwich(reference.C, row, column, C);
   };
   const Vector4 e(a.x(), a.y(), b.x(), b.y());
   for (int end = 0; end < 2; ++end) {

@@ -143,12 +143,9 @@ bool Ransac::run_beside(std::uint64_t seed, const Se3* prediction, Se3& T, Ransa
   return found;
 }
 
-void Ransac::start(Gain by, RansacSummary& summary) {
+void Ransac::start(Gain gain, RansacSummary& summary) {
   summary = {};
-  gain_ = by;
-  possible_ = 0;
-  for (const RansacCandidate& candidate : leading_)
-    possible_ += gain(candidate) * kFreshScale * threshold_[candidate.set];
+  gain_ = gain;
   fresh_to_beat_ = 0;
   inliers_ = 0;
 }
@@ -281,8 +278,10 @@ bool Ransac::rate(const Se3& T, Se3& best, RansacSummary& summary) {
 
 // Score of an unrefined hypothesis, or 0 as soon as it cannot exceed to_beat.
 double Ransac::score(const Se3& T, double to_beat) const {
-  double possible = possible_;
+  double possible = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
+  for (const RansacCandidate& candidate : leading_)
+    possible += gain(candidate) * kFreshScale * threshold_[candidate.set];
   for (const RansacCandidate& candidate : leading_) {
     const double threshold = kFreshScale * threshold_[candidate.set];
     const ConstraintSet& set = *sets_[candidate.set];

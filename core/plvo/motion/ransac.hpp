@@ -106,7 +106,7 @@ class Ransac {
   };
   void weigh();
   void gather_leading();
-  void start(Gain by, RansacSummary& summary);
+  void start(Gain gain, RansacSummary& summary);
   bool sample(std::uint64_t seed, std::size_t n, const Matrix3& R_expected, Se3& best,
               RansacSummary& summary);
   std::size_t move_inliers_back();
@@ -137,7 +137,6 @@ class Ransac {
   int inliers_ = 0;
   double evidence_ = 0;  // of all candidates
   Gain gain_ = Gain::kMatch;
-  double possible_ = 0;       // score of an unrefined hypothesis that all leading matches agree with exactly
   double fresh_to_beat_ = 0;  // score that the next hypothesis must exceed to be refined
   std::array<double, kMaxConstraintSets> threshold_{};
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 
 #include "plvo/motion/prior_constraint.hpp"
 #include "plvo/odometry/tracking/carried_features.hpp"
@@ -123,24 +124,7 @@ TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, con
           context.carried};
 }
 
-template <typename T>
-void copy_elements(const FixedVector<T>& from, FixedVector<T>& to) {
-  to.resize(from.size());
-  std::copy(from.begin(), from.end(), to.begin());
-}
-
 }  // namespace
-
-void ReferenceTracks::copy(const ReferenceTracks& other) {
-  copy_elements(other.points.matches, points.matches);
-  std::copy(other.points.pixels.begin(), other.points.pixels.end(), points.pixels.begin());
-  std::copy(other.points.points.begin(), other.points.points.end(), points.points.begin());
-  std::copy(other.point_inliers.begin(), other.point_inliers.end(), point_inliers.begin());
-  copy_elements(other.lines, lines);
-  std::copy(other.line_inliers.begin(), other.line_inliers.end(), line_inliers.begin());
-  copy_elements(other.surfaces, surfaces);
-  inliers = other.inliers;
-}
 
 std::size_t latest_of(std::span<const Reference> references) {
   std::size_t latest = 0;
@@ -422,23 +406,26 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
         current_exposure(context.camera, references[latest].timing, tracked.motion.motions[latest]);
 }
 
+// A TrackedMotion holds numbers alone, so its bytes are its value.
 void ReferenceTracking::keep(const TrackedMotion& tracked, Arena& scratch, KeptEstimate*& kept) const {
   if (kept == nullptr) {
-    kept = KeptEstimate::take(scratch).data();
-    for (std::size_t r = 0; r < kMaxReferences; ++r) kept->tracks[r].allocate_like(scratch, tracks_[r]);
+    kept = scratch.take<KeptEstimate>("kept estimate", 1).data();
+    kept->elements = scratch.take<std::byte>("kept tracks", elements_.size());
     assert(!scratch.exhausted());  // reserve()
   }
-  for (std::size_t r = 0; r < kMaxReferences; ++r) kept->tracks[r].copy(tracks_[r]);
-  kept->tracked = tracked;
+  std::memcpy(kept->tracked, &tracked, sizeof tracked);
+  std::memcpy(kept->tracks, &tracks_, sizeof tracks_);
+  std::memcpy(kept->elements.data(), elements_.data(), elements_.size());
 }
 
 void ReferenceTracking::put_back(const KeptEstimate& kept, TrackedMotion& tracked) {
-  for (std::size_t r = 0; r < kMaxReferences; ++r) tracks_[r].copy(kept.tracks[r]);
   const int ransac_iterations = tracked.ransac_iterations;
   const int lm_iterations = tracked.lm_iterations;
-  tracked = kept.tracked;
+  std::memcpy(static_cast<void*>(&tracked), kept.tracked, sizeof tracked);
   tracked.ransac_iterations = ransac_iterations;
   tracked.lm_iterations = lm_iterations;
+  std::memcpy(static_cast<void*>(&tracks_), kept.tracks, sizeof tracks_);
+  std::memcpy(elements_.data(), kept.elements.data(), elements_.size());
 }
 
 }  // namespace plvo

@@ -35,25 +35,14 @@ struct ReferenceTracks {
   int inliers = 0;  // points and lines
 
   constexpr void allocate(Arena& memory, const Limits& limits) {
-    allocate(memory, limits.keypoints, static_cast<std::size_t>(limits.segments),
-             static_cast<std::size_t>(limits.surfaces));
-  }
-  // With the capacities of `other`.
-  void allocate_like(Arena& memory, const ReferenceTracks& other) {
-    allocate(memory, static_cast<int>(other.points.matches.capacity()), other.lines.capacity(),
-             other.surfaces.capacity());
-  }
-  // The capacities are at least the sizes of `other`.
-  void copy(const ReferenceTracks& other);
-
- private:
-  constexpr void allocate(Arena& memory, int keypoints, std::size_t segments, std::size_t samples) {
-    points.allocate(memory, keypoints);
-    point_inliers = memory.take<std::uint8_t>("point tracks", static_cast<std::size_t>(keypoints));
+    points.allocate(memory, limits.keypoints);
+    point_inliers = memory.take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
+    const auto segments = static_cast<std::size_t>(limits.segments);
     lines = FixedVector<Match>(memory.take<Match>("line tracks", segments));
     line_inliers = memory.take<std::uint8_t>("line tracks", segments);
-    if (samples > 0)
-      surfaces = FixedVector<SurfaceMatch>(memory.take<SurfaceMatch>("surface tracks", samples));
+    if (limits.surfaces > 0)
+      surfaces = FixedVector<SurfaceMatch>(
+          memory.take<SurfaceMatch>("surface tracks", static_cast<std::size_t>(limits.surfaces)));
   }
 };
 
@@ -87,28 +76,26 @@ struct TrackedMotion {
   int inliers() const { return points.inliers + lines.inliers; }
 };
 
-// An estimate with its tracks, kept while other motions are tried.
+// Bytes of an estimate and of its tracks, kept while other motions are tried.
 struct KeptEstimate {
-  std::array<ReferenceTracks, kMaxReferences> tracks;
-  TrackedMotion tracked;
-
-  static constexpr std::span<KeptEstimate> take(Arena& memory) {
-    return memory.take<KeptEstimate>("kept estimate", 1);
-  }
+  std::byte tracked[sizeof(TrackedMotion)];
+  std::byte tracks[kMaxReferences * sizeof(ReferenceTracks)];
+  std::span<std::byte> elements;  // what the tracks refer to
 };
 
 class ReferenceTracking {
  public:
   constexpr void allocate(Arena& memory, const Limits& limits) {
+    const std::size_t mark = memory.mark();
     allocate_tracks(memory, limits);
+    elements_ = memory.since(mark);
     alignment_.allocate(memory, limits.width, limits.height);
   }
   // Reserves the scratch of the largest stage; the stages run one after the other.
   static constexpr void reserve(Arena& memory, const Limits& limits) {
     const ScratchScope scope(memory);
-    KeptEstimate::take(memory);
-    ReferenceTracking kept;
-    kept.allocate_tracks(memory, limits);
+    memory.take<KeptEstimate>("kept estimate", 1);
+    ReferenceTracking().allocate_tracks(memory, limits);
     {
       const ScratchScope aligning(memory);
       SparseAlignment::take_windows(memory);
@@ -179,6 +166,7 @@ class ReferenceTracking {
                 const LmOptions& lm, TrackedMotion& tracked);
 
   std::array<ReferenceTracks, kMaxReferences> tracks_;
+  std::span<std::byte> elements_;  // all that tracks_ refer to
   SparseAlignment alignment_;
 };
 
