@@ -75,7 +75,7 @@ class Pairs {
       reference.features = &modules_.frames[1 - slot_];
       modules_.tracking.find(reference, current, T_predicted_, PointMatchConfig().radius_px, tracked);
       const Se3 T_found = motion.T_current_reference;
-      if (tracked.ok()) modules_.tracking.refine({&reference, 1}, current, T_found, tracked);
+      if (tracked.ok()) modules_.tracking.refine({&reference, 1}, current, T_found, false, tracked);
       if (tracked.ok()) fusion = fuse(*reference.features, current.features, motion.T_current_reference);
     } else {
       extraction.lift_lines(context, depth, {}, current.features.lines);

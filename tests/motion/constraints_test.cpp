@@ -209,6 +209,67 @@ TEST(LineResidual, MahalanobisDistanceIsThatOfTheBestLandmark) {
   }
 }
 
+// The squared distance of the offsets of both ends from the reference line, written out with whole matrices.
+double distance_of_offsets(const Line3d& reference, const Line3d& current, const Se3& T) {
+  const Vector3 q = 0.5 * (reference.a + reference.b);
+  const double half = 0.5 * (reference.b - reference.a).norm();
+  const Matrix3 G = frame_along((reference.b - reference.a) / (2 * half));
+  Dense across = Dense::Zero(6, 4);
+  across.block<3, 2>(0, 0) = across.block<3, 2>(3, 2) = G.leftCols<2>();
+  Dense turned = Dense::Zero(6, 4);
+  turned.block<3, 2>(0, 0) = turned.block<3, 2>(3, 2) = T.R * G.leftCols<2>();
+  DenseVector offsets(6);
+  offsets << current.a - T * q, current.b - T * q;
+  const auto share = [&](const Vector3& end) {
+    return (half + (T.R * G.col(2)).dot(end - T * q)) / (2 * half);
+  };
+  Dense N = Dense::Zero(4, 4);
+  for (int k = 0; k < 2; ++k) {
+    N(k, k) = 1 - share(current.a);
+    N(k, 2 + k) = share(current.a);
+    N(2 + k, k) = 1 - share(current.b);
+    N(2 + k, 2 + k) = share(current.b);
+  }
+  const Dense C_reference = test::transposed_product(across, test::product(reference.Sigma, across));
+  const Dense C_current = test::transposed_product(turned, test::product(current.Sigma, turned));
+  const Dense C = C_current + test::product(N, test::product(C_reference, N.transpose()));
+  const DenseVector e = test::transposed_product(turned, offsets);
+  return test::solve_lower(test::cholesky(C), e).squaredNorm();
+}
+
+// Bounds by the trace and by each end may end the evaluation early; they must never reject a line within the
+// cutoff, nor change a distance that is within it.
+TEST(LineResidual, EarlyBoundsRejectOnlyBeyondTheCutoff) {
+  Gaussian gaussian(35);
+  Bench bench;
+  int within = 0, beyond = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const SimulatedPair pair = test::simulate(gaussian, 0, 1);
+    bench.lines.clear();
+    bench.points.clear();
+    bench.load(pair);
+    Vector6 step;
+    for (int k = 0; k < 6; ++k) step[k] = (trial % 4) * (k < 3 ? 0.005 : 0.002) * gaussian();
+    const Se3 T = boxplus(pair.truth, step);
+    const double reference = distance_of_offsets(pair.lines_reference[0], pair.lines_current[0], T);
+    const double whole = bench.lines[0].mahalanobis_squared(0, T, 1e12);
+    EXPECT_NEAR(whole, reference, 1e-8 * (1 + reference));
+    for (const double cutoff : {1.0, 6.0, 13.3, 53.0, 400.0}) {
+      const double s = bench.lines[0].mahalanobis_squared(0, T, cutoff);
+      if (whole <= cutoff) {
+        EXPECT_EQ(s, whole);
+        ++within;
+      } else {
+        EXPECT_GT(s, cutoff);
+        EXPECT_LE(s, std::max(2 * cutoff, whole * (1 + 1e-9)));
+        ++beyond;
+      }
+    }
+  }
+  EXPECT_GT(within, 200);
+  EXPECT_GT(beyond, 200);
+}
+
 // Gradient of the eliminated cost against central differences of it; for every kind and every loss.
 class Gradient : public ::testing::TestWithParam<std::tuple<int, RobustLoss>> {};
 

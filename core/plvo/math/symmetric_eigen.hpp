@@ -17,8 +17,8 @@ struct SymmetricEigen {
 };
 
 // Eigenvalues, the diagonal of A afterwards, and eigenvectors V of the n × n matrix `symmetric`, whose lower
-// triangle is read. Convergence is quadratic, so 4 to 6 sweeps usually suffice. A finite matrix of these sizes
-// never reaches the limit of 12.
+// triangle is read. Convergence is quadratic, so 4 to 6 sweeps usually suffice. A finite matrix of these
+// sizes never reaches the limit of 12.
 template <typename Size>
 inline void diagonalise(const double* symmetric, Size n, double* A, double* V) {
   double squared_norm = 0;

@@ -224,13 +224,13 @@ class MotionSearch {
   // Before the next estimate: keeps the last one if it is the best so far.
   void keep_best() {
     if (!last_is_best_) return;
-    tracking_.keep(tracked_, current_.context.scratch, kept_);
+    tracking_.keep(current_, tracked_, kept_);
     last_is_best_ = false;
   }
 
   void take_best() {
     if (last_is_best_ || !(best_.explained.evidence > 0)) return;
-    tracking_.put_back(*kept_, tracked_);
+    tracking_.put_back(*kept_, current_, tracked_);
     last_is_best_ = true;
   }
 

@@ -30,13 +30,6 @@ struct PointTracks {
   FixedVector<Match> matches;
   std::span<Vector2> pixels;  // level-0 px
   std::span<Point3d> points;  // camera frame of the current frame, at mid-exposure
-
-  constexpr void allocate(Arena& memory, int capacity) {
-    const auto n = static_cast<std::size_t>(capacity);
-    matches = FixedVector<Match>(memory.take<Match>("point tracks", n));
-    pixels = memory.take<Vector2>("point tracks", n);
-    points = memory.take<Point3d>("point tracks", n);
-  }
 };
 
 // The parts of the current frame that the tracker needs.

@@ -407,25 +407,30 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
 }
 
 // A TrackedMotion holds numbers alone, so its bytes are its value.
-void ReferenceTracking::keep(const TrackedMotion& tracked, Arena& scratch, KeptEstimate*& kept) const {
+void ReferenceTracking::keep(const CurrentFrame& current, const TrackedMotion& tracked,
+                             KeptEstimate*& kept) const {
+  Arena& scratch = current.context.scratch;
   if (kept == nullptr) {
     kept = scratch.take<KeptEstimate>("kept estimate", 1).data();
-    kept->elements = scratch.take<std::byte>("kept tracks", elements_.size());
+    kept->matches = scratch.take<std::byte>("kept matches", matches_.size());
     assert(!scratch.exhausted());  // reserve()
   }
   std::memcpy(kept->tracked, &tracked, sizeof tracked);
   std::memcpy(kept->tracks, &tracks_, sizeof tracks_);
-  std::memcpy(kept->elements.data(), elements_.data(), elements_.size());
+  std::memcpy(kept->matches.data(), matches_.data(), matches_.size());
+  kept->lifted_with = current.features.lines.lifted_with[0];
 }
 
-void ReferenceTracking::put_back(const KeptEstimate& kept, TrackedMotion& tracked) {
+void ReferenceTracking::put_back(const KeptEstimate& kept, const CurrentFrame& current,
+                                 TrackedMotion& tracked) {
   const int ransac_iterations = tracked.ransac_iterations;
   const int lm_iterations = tracked.lm_iterations;
   std::memcpy(static_cast<void*>(&tracked), kept.tracked, sizeof tracked);
   tracked.ransac_iterations = ransac_iterations;
   tracked.lm_iterations = lm_iterations;
   std::memcpy(static_cast<void*>(&tracks_), kept.tracks, sizeof tracks_);
-  std::memcpy(elements_.data(), kept.elements.data(), elements_.size());
+  std::memcpy(matches_.data(), kept.matches.data(), matches_.size());
+  current.extraction.lift_lines(current.context, current.depth, kept.lifted_with, current.features.lines);
 }
 
 }  // namespace plvo

@@ -35,14 +35,25 @@ struct ReferenceTracks {
   int inliers = 0;  // points and lines
 
   constexpr void allocate(Arena& memory, const Limits& limits) {
-    points.allocate(memory, limits.keypoints);
-    point_inliers = memory.take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
-    const auto segments = static_cast<std::size_t>(limits.segments);
-    lines = FixedVector<Match>(memory.take<Match>("line tracks", segments));
-    line_inliers = memory.take<std::uint8_t>("line tracks", segments);
+    allocate_measurements(memory, limits);
+    allocate_matches(memory, limits);
+  }
+  // What only an estimate reads.
+  constexpr void allocate_measurements(Arena& memory, const Limits& limits) {
+    points.points = memory.take<Point3d>("point tracks", static_cast<std::size_t>(limits.keypoints));
     if (limits.surfaces > 0)
       surfaces = FixedVector<SurfaceMatch>(
           memory.take<SurfaceMatch>("surface tracks", static_cast<std::size_t>(limits.surfaces)));
+  }
+  // The rest, which is also read when the motion is known.
+  constexpr void allocate_matches(Arena& memory, const Limits& limits) {
+    const auto keypoints = static_cast<std::size_t>(limits.keypoints);
+    points.matches = FixedVector<Match>(memory.take<Match>("point tracks", keypoints));
+    points.pixels = memory.take<Vector2>("point tracks", keypoints);
+    point_inliers = memory.take<std::uint8_t>("point tracks", keypoints);
+    const auto segments = static_cast<std::size_t>(limits.segments);
+    lines = FixedVector<Match>(memory.take<Match>("line tracks", segments));
+    line_inliers = memory.take<std::uint8_t>("line tracks", segments);
   }
 };
 
@@ -80,22 +91,25 @@ struct TrackedMotion {
 struct KeptEstimate {
   std::byte tracked[sizeof(TrackedMotion)];
   std::byte tracks[kMaxReferences * sizeof(ReferenceTracks)];
-  std::span<std::byte> elements;  // what the tracks refer to
+  std::span<std::byte> matches;  // ReferenceTracks::allocate_matches
+  Exposure lifted_with;          // the current frame's lines
 };
 
 class ReferenceTracking {
  public:
   constexpr void allocate(Arena& memory, const Limits& limits) {
+    for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
+      tracks_[r].allocate_measurements(memory, limits);
     const std::size_t mark = memory.mark();
-    allocate_tracks(memory, limits);
-    elements_ = memory.since(mark);
+    allocate_matches(memory, limits);
+    matches_ = memory.since(mark);
     alignment_.allocate(memory, limits.width, limits.height);
   }
   // Reserves the scratch of the largest stage; the stages run one after the other.
   static constexpr void reserve(Arena& memory, const Limits& limits) {
     const ScratchScope scope(memory);
     memory.take<KeptEstimate>("kept estimate", 1);
-    ReferenceTracking().allocate_tracks(memory, limits);
+    ReferenceTracking().allocate_matches(memory, limits);
     {
       const ScratchScope aligning(memory);
       SparseAlignment::take_windows(memory);
@@ -121,8 +135,8 @@ class ReferenceTracking {
   void find(const Reference& reference, const CurrentFrame& current, const Se3& T_predicted, double radius_px,
             TrackedMotion& tracked);
   // Estimates the motion from the base with all references at once (1 … Limits::references), registered from
-  // T_current_base. leads_on: if the result is another motion (is_other), the caller refines again from it, so
-  // it has no shifts.
+  // T_current_base. leads_on: if the result is another motion (is_other), the caller refines again from it,
+  // so it has no shifts.
   void refine(std::span<const Reference> references, const CurrentFrame& current, const Se3& T_current_base,
               bool leads_on, TrackedMotion& tracked);
 
@@ -132,17 +146,18 @@ class ReferenceTracking {
               TrackedMotion& tracked);
 
   // Keeps the last estimate, in scratch memory that is taken with the first one: kept is null before.
-  void keep(const TrackedMotion& tracked, Arena& scratch, KeptEstimate*& kept) const;
-  // Makes the kept estimate the last one. The numbers of iterations stay those of all estimates.
-  void put_back(const KeptEstimate& kept, TrackedMotion& tracked);
+  void keep(const CurrentFrame& current, const TrackedMotion& tracked, KeptEstimate*& kept) const;
+  // Makes the kept estimate the last one. The numbers of iterations stay those of all estimates. What
+  // only an estimate reads is not put back.
+  void put_back(const KeptEstimate& kept, const CurrentFrame& current, TrackedMotion& tracked);
 
   // Tracks of the last call, in the order of its references.
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
-  constexpr void allocate_tracks(Arena& memory, const Limits& limits) {
+  constexpr void allocate_matches(Arena& memory, const Limits& limits) {
     for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
-      tracks_[r].allocate(memory, limits);
+      tracks_[r].allocate_matches(memory, limits);
   }
   // What an estimate needs besides the matches (tracks_): the features of each reference after
   // row-time compensation, which lie in the scratch, and the poses of the references.
@@ -166,7 +181,7 @@ class ReferenceTracking {
                 const LmOptions& lm, TrackedMotion& tracked);
 
   std::array<ReferenceTracks, kMaxReferences> tracks_;
-  std::span<std::byte> elements_;  // all that tracks_ refer to
+  std::span<std::byte> matches_;  // memory of their allocate_matches
   SparseAlignment alignment_;
 };
 
