@@ -126,7 +126,7 @@ TEST(KeptEstimate, IsTheSameAsOneFromTheSameStart) {
       const int iterations = tracked.lm_iterations;
 
       KeptEstimate* kept = nullptr;
-      tracking.keep(current, tracked, kept);
+      tracking.keep(tracked, arena, kept);
       Vector6 step;
       step << 0.1, 0, 0, 0, 0.05, 0;
       tracking.refine({&reference, 1}, current, boxplus(start, step), false, tracked);
@@ -135,7 +135,7 @@ TEST(KeptEstimate, IsTheSameAsOneFromTheSameStart) {
       const int all_iterations = tracked.lm_iterations;
       EXPECT_GE(all_iterations, iterations);
 
-      tracking.put_back(*kept, current, tracked);
+      tracking.put_back(*kept, tracked);
       EXPECT_TRUE(tracked.ok());
       EXPECT_EQ(tracked.lm_iterations, all_iterations);
       expect_same(copy_of(tracked, tracking.tracks(0)), first);

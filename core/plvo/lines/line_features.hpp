@@ -19,14 +19,14 @@ struct LineFeatures {
   std::span<LineDescriptor> descriptors;  // descriptors of the 3D lines
   std::span<Line3d> lines;                // camera frame
   std::size_t count_3d = 0;
-  bool lifted = false;              // 3D lines have been searched for
+  int lifts = 0;                    // how often 3D lines were searched for; 0: not yet
   std::span<Exposure> lifted_with;  // size 1: the exposure with which the lines were lifted
 
   // Removes all segments and limits the capacity.
   void clear(std::size_t capacity) {
     segments = FixedVector<Segment>({segments.begin(), capacity < lines.size() ? capacity : lines.size()});
     count_3d = 0;
-    lifted = false;
+    lifts = 0;
   }
 
   constexpr void allocate(Arena& memory, int capacity) {

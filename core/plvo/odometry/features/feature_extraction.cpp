@@ -186,15 +186,15 @@ void FeatureExtraction::lift(const StageContext& context, const DepthSampler& de
 void FeatureExtraction::lift_lines(const StageContext& context, const DepthSampler& depth,
                                    const Exposure& exposure, LineFeatures& lines) const {
   const StageTimer timer(context, Stage::kLines);
-  if (!lines.lifted) {
+  if (lines.lifts == 0) {
     depth.fetch();
     lift_segments(context, depth.with(exposure), lines);
-    lines.lifted = true;
   } else if (exposure.depth_apart() && exposure.depth_shift_px(lines.lifted_with[0]) > kSameDepth_px) {
     lift_segments_again(context, depth.with(exposure), lines);
   } else {
     return;
   }
+  ++lines.lifts;
   lines.lifted_with[0] = exposure;
 }
 

@@ -212,7 +212,7 @@ class MotionSearch {
     if (refine(start)) explained = explained_by_tracked();
     if (!explained.explains_proven) explained.evidence *= kWorthOfContradicted;
     last_is_best_ = explained.evidence > times * best_.explained.evidence;
-    if (last_is_best_) best_ = {tracked_.motion.T_current_reference, explained};
+    if (last_is_best_) best_ = {start, tracked_.motion.T_current_reference, explained};
     return explained;
   }
 
@@ -224,13 +224,17 @@ class MotionSearch {
   // Before the next estimate: keeps the last one if it is the best so far.
   void keep_best() {
     if (!last_is_best_) return;
-    tracking_.keep(current_, tracked_, kept_);
+    tracking_.keep(tracked_, current_.context.scratch, kept_);
     last_is_best_ = false;
   }
 
+  // If the lines of the frame were lifted again, the best motion is estimated again, with lines for it.
   void take_best() {
     if (last_is_best_ || !(best_.explained.evidence > 0)) return;
-    tracking_.put_back(*kept_, current_, tracked_);
+    if (current_.features.lines.lifts > 1)
+      (void)refine(best_.start);
+    else
+      tracking_.put_back(*kept_, tracked_);
     last_is_best_ = true;
   }
 
@@ -260,7 +264,7 @@ class MotionSearch {
     // A motion is also accepted if two searches lead to it.
     if (best_.explained.evidence > 0 && !is_other_motion(start, best_.motion)) {
       take_best();
-      return best_.explained.explains_proven;
+      return tracked_.ok() && best_.explained.explains_proven;
     }
     const Explained found = explain(start);
     return found.share >= kAcceptedShareByFeatures && found.explains_proven;
@@ -272,9 +276,9 @@ class MotionSearch {
   TrackedMotion& tracked_;
   std::span<const Reference> references_;
   const Reference& latest_;
-  // The motion that explains most so far, and what it explains.
+  // The motion that explains most so far, the start that led to it, and what it explains.
   struct {
-    Se3 motion;
+    Se3 start, motion;
     Explained explained;
   } best_;
   bool last_is_best_ = false;  // the last estimate is that of best_; otherwise it is kept

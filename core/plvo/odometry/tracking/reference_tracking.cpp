@@ -291,7 +291,7 @@ void ReferenceTracking::associate_by_motion(std::span<const Reference> reference
   const Exposure exposure =
       current_exposure(camera, references[association.latest].timing, motions[association.latest]);
   const DepthSampler depth = current.depth.with(exposure);
-  if (is_whole || !current.features.lines.lifted)
+  if (is_whole || current.features.lines.lifts == 0)
     current.extraction.lift_lines(context, current.depth, exposure, current.features.lines);
   for (std::size_t r = 0; r < references.size(); ++r) {
     const Reference& reference = references[r];
@@ -407,9 +407,7 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
 }
 
 // A TrackedMotion holds numbers alone, so its bytes are its value.
-void ReferenceTracking::keep(const CurrentFrame& current, const TrackedMotion& tracked,
-                             KeptEstimate*& kept) const {
-  Arena& scratch = current.context.scratch;
+void ReferenceTracking::keep(const TrackedMotion& tracked, Arena& scratch, KeptEstimate*& kept) const {
   if (kept == nullptr) {
     kept = scratch.take<KeptEstimate>("kept estimate", 1).data();
     kept->matches = scratch.take<std::byte>("kept matches", matches_.size());
@@ -418,11 +416,9 @@ void ReferenceTracking::keep(const CurrentFrame& current, const TrackedMotion& t
   std::memcpy(kept->tracked, &tracked, sizeof tracked);
   std::memcpy(kept->tracks, &tracks_, sizeof tracks_);
   std::memcpy(kept->matches.data(), matches_.data(), matches_.size());
-  kept->lifted_with = current.features.lines.lifted_with[0];
 }
 
-void ReferenceTracking::put_back(const KeptEstimate& kept, const CurrentFrame& current,
-                                 TrackedMotion& tracked) {
+void ReferenceTracking::put_back(const KeptEstimate& kept, TrackedMotion& tracked) {
   const int ransac_iterations = tracked.ransac_iterations;
   const int lm_iterations = tracked.lm_iterations;
   std::memcpy(static_cast<void*>(&tracked), kept.tracked, sizeof tracked);
@@ -430,7 +426,6 @@ void ReferenceTracking::put_back(const KeptEstimate& kept, const CurrentFrame& c
   tracked.lm_iterations = lm_iterations;
   std::memcpy(static_cast<void*>(&tracks_), kept.tracks, sizeof tracks_);
   std::memcpy(matches_.data(), kept.matches.data(), matches_.size());
-  current.extraction.lift_lines(current.context, current.depth, kept.lifted_with, current.features.lines);
 }
 
 }  // namespace plvo

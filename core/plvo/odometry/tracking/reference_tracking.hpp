@@ -92,7 +92,6 @@ struct KeptEstimate {
   std::byte tracked[sizeof(TrackedMotion)];
   std::byte tracks[kMaxReferences * sizeof(ReferenceTracks)];
   std::span<std::byte> matches;  // ReferenceTracks::allocate_matches
-  Exposure lifted_with;          // the current frame's lines
 };
 
 class ReferenceTracking {
@@ -146,10 +145,10 @@ class ReferenceTracking {
               TrackedMotion& tracked);
 
   // Keeps the last estimate, in scratch memory that is taken with the first one: kept is null before.
-  void keep(const CurrentFrame& current, const TrackedMotion& tracked, KeptEstimate*& kept) const;
+  void keep(const TrackedMotion& tracked, Arena& scratch, KeptEstimate*& kept) const;
   // Makes the kept estimate the last one. The numbers of iterations stay those of all estimates. What
   // only an estimate reads is not put back.
-  void put_back(const KeptEstimate& kept, const CurrentFrame& current, TrackedMotion& tracked);
+  void put_back(const KeptEstimate& kept, TrackedMotion& tracked);
 
   // Tracks of the last call, in the order of its references.
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
