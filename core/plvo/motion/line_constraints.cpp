@@ -35,7 +35,7 @@ struct EndOffsets {
 
 // Writes the covariance of the offsets of end i across the line with those of end j, a block of Uᵀ Λ U, and
 // returns that of the offset along the line, a row of dᵀ Λ U. Both columns are computed at once.
-Pair observe_ends(const Line3d& line, int i, int j, const Matrix3& G, Matrix4& C) {
+inline Pair observe_ends(const Line3d& line, int i, int j, const Matrix3& G, Matrix4& C) {
   const Pair U[3] = {{G(0, 0), G(0, 1)}, {G(1, 0), G(1, 1)}, {G(2, 0), G(2, 1)}};
   Pair right[3];
   for (int r = 0; r < 3; ++r)
