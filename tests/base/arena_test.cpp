@@ -156,6 +156,23 @@ TEST(Arena, ReleasesScratchOnEveryReturnPath) {
   EXPECT_FALSE(owner.arena.exhausted());
 }
 
+TEST(Arena, KnowsTheMemoryThatWasTakenSinceAMark) {
+  alignas(kArenaAlignment) std::array<std::byte, 4096> block{};
+  Arena arena(block);
+  (void)arena.take<int>("before", 3);
+  const std::size_t mark = arena.mark();
+  EXPECT_TRUE(arena.since(mark).empty());
+  const std::span<double> first = arena.take<double>("first", 5);
+  const std::span<char> last = arena.take<char>("last", 7);
+  const std::span<std::byte> taken = arena.since(mark);
+  EXPECT_EQ(taken.data(), reinterpret_cast<std::byte*>(first.data()));
+  EXPECT_GE(taken.data() + taken.size(), reinterpret_cast<std::byte*>(last.data() + last.size()));
+  EXPECT_EQ(taken.size(), arena.used() - mark);
+  Arena counting = Arena::counting();
+  (void)counting.take<int>("counted", 3);
+  EXPECT_TRUE(counting.since(0).empty());
+}
+
 TEST(Arena, RecordsBytesPerNameUntilSealed) {
   ArenaOf owner(4096);
   char name_elsewhere[] = "points";  // the same name at another address

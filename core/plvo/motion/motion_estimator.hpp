@@ -69,8 +69,8 @@ struct MotionStart {
   bool estimated;
   // Another motion is searched if this one explains too little.
   bool search_beside = true;
-  // What each kind says is found (MotionEstimate::shifts), for another motion (is_other) only with the
-  // second.
+  // What each kind says is found (MotionEstimate::shifts); the second is for a result that is another motion
+  // (is_other).
   bool find_shifts = true;
   bool find_shifts_of_other = true;
   // The matches were registered near the prediction. Outliers are then mostly parts of an object that moves,
